@@ -1,0 +1,106 @@
+"""diametral: does a point lie inside the circle that has a segment as its diameter (is the segment encroached)?"""
+
+import math
+
+from exactkernel.codes import DECODED, FILTER, GRID, RATIONAL
+from exactkernel.constants import ORIENT2D_BOUND
+from exactkernel.context import ORIENT2D_ROW, Context, guarded_context
+from exactkernel.coordinates import doubles_of, rationals_of
+from exactkernel.expansions import two_diff
+from exactkernel.jit import jit
+from exactkernel.orient2d import products_difference, safe_degree_2
+from exactkernel.rational import diametral_from_doubles, diametral_rational, raise_if_interrupted
+from exactkernel.types import PointLike, Sign, Stage
+
+__all__ = ["diametral", "diametral_adaptive", "diametral_staged"]
+
+
+@jit
+def diametral_slow(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
+    """Return stage * 4 + sign + 1 for a call that the filter of the loop did not decide."""
+    p, q, r, s = px - ax, bx - px, py - ay, py - by
+    left, right = p * q, r * s
+    det = left - right
+    if c.orient2d_bound == math.inf:  # outside the window: guard this call by itself
+        if not (
+            safe_degree_2(ax) and safe_degree_2(ay) and safe_degree_2(bx)
+            and safe_degree_2(by) and safe_degree_2(px) and safe_degree_2(py)
+        ):  # fmt: skip
+            answer = 0
+            while answer == 0:  # 0: the callback was interrupted before it could answer
+                answer = diametral_from_doubles(ax, ay, bx, by, px, py)
+            return RATIONAL + (answer - 2)
+        bound = ORIENT2D_BOUND * (abs(left) + abs(right))
+        if det > bound:
+            return FILTER + 1
+        if -det > bound:
+            return FILTER - 1
+    elif max(max(abs(p), abs(q)), max(abs(r), abs(s))) <= c.grid_limit:
+        return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
+    p, p_tail = two_diff(px, ax)
+    q, q_tail = two_diff(bx, px)
+    r, r_tail = two_diff(py, ay)
+    s, s_tail = two_diff(py, by)
+    return products_difference(p, p_tail, q, q_tail, r, r_tail, s, s_tail, c.scratch)
+
+
+@jit
+def diametral_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
+    """Return the exact sign of diametral in a compiled loop; tallies the stage in ``c.counts``."""
+    left = (px - ax) * (bx - px)
+    right = (py - ay) * (py - by)
+    det = left - right
+    bound = c.orient2d_bound * (abs(left) + abs(right))
+    if det > bound:
+        c.counts[ORIENT2D_ROW, 0] += 1
+        return 1
+    if -det > bound:
+        c.counts[ORIENT2D_ROW, 0] += 1
+        return -1
+    code = diametral_slow(c, ax, ay, bx, by, px, py)
+    c.counts[ORIENT2D_ROW, code >> 2] += 1
+    return (code & 3) - 1
+
+
+_GUARDED = guarded_context()
+
+
+def diametral_staged(a: PointLike, b: PointLike, p: PointLike) -> tuple[Sign, Stage]:
+    """Return the sign of :func:`diametral` and the stage that decided it.
+
+    >>> from exactkernel import diametral_staged
+    >>> diametral_staged((0, 0), (2, 0), (1, 0.5))
+    (<Sign.POSITIVE: 1>, <Stage.FILTER: 0>)
+    """
+    doubles = doubles_of(a, b, p)
+    if doubles is None:
+        pa, pb, pp = rationals_of(a, b, p)
+        return Sign(diametral_rational(pa, pb, pp)), Stage.RATIONAL
+    code = diametral_slow(_GUARDED, *doubles)
+    raise_if_interrupted()
+    return DECODED[code]
+
+
+def diametral(a: PointLike, b: PointLike, p: PointLike) -> Sign:
+    """Return on which side of the circle with diameter ab the point p lies, exactly.
+
+    ============  ==============================================================
+    ``POSITIVE``  p inside: it sees ab under an obtuse angle and encroaches on it
+    ``ZERO``      on the circle
+    ``NEGATIVE``  outside
+    ============  ==============================================================
+
+    Points are pairs of int, float, numpy scalar, Fraction, mpz or mpq, mixed as they come; nothing is rounded.
+
+    Raises:
+        NonFiniteError: a coordinate is NaN or infinite.
+        CoordinateError: a coordinate is no number.
+        ShapeError: a point is no pair.
+
+    Constant time for doubles. Reference [Ruppert 1995].
+
+    >>> from exactkernel import diametral
+    >>> diametral((0, 0), (2, 0), (1, 1))
+    <Sign.ZERO: 0>
+    """
+    return diametral_staged(a, b, p)[0]

@@ -1,0 +1,32 @@
+"""What the library raises: one base class, and the culprit named in every message."""
+
+from collections.abc import Sequence
+
+__all__ = ["CoordinateError", "DegenerateError", "ExactMeshError", "NonFiniteError", "ShapeError"]
+
+
+class ExactMeshError(ValueError):
+    """Base of every error that exactkernel and exactmesh raise on bad input.
+
+    ``indices`` names the offending items of the input (empty where the fault has no index).
+    """
+
+    def __init__(self, message: str, *, indices: Sequence[int] = ()) -> None:
+        super().__init__(message)
+        self.indices = tuple(int(i) for i in indices)
+
+
+class CoordinateError(ExactMeshError):
+    """A coordinate is no number, or a number that would have to be rounded."""
+
+
+class NonFiniteError(CoordinateError):
+    """A coordinate is NaN or infinite."""
+
+
+class ShapeError(ExactMeshError):
+    """An array or a point has the wrong shape."""
+
+
+class DegenerateError(ExactMeshError):
+    """The construction does not exist: collinear corners, parallel lines, a result beyond the doubles."""
