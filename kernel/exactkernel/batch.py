@@ -31,9 +31,7 @@ def _diametral_loop(k: Context, a: FloatArray, b: FloatArray, p: FloatArray, sig
 
 
 @jit
-def _incircle_loop(
-    k: Context, a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, signs: SignArray
-) -> None:
+def _incircle_loop(k: Context, a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray, signs: SignArray) -> None:
     for i in range(len(signs)):
         signs[i] = incircle_adaptive(
             k, a[i, 0], a[i, 1], b[i, 0], b[i, 1], c[i, 0], c[i, 1], d[i, 0], d[i, 1]
@@ -105,9 +103,7 @@ def diametral_batch(a: npt.ArrayLike, b: npt.ArrayLike, p: npt.ArrayLike) -> Sig
     return signs
 
 
-def incircle_batch(
-    a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike
-) -> SignArray:
+def incircle_batch(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike) -> SignArray:
     """Return the signs of :func:`incircle` over arrays of points.
 
     Arguments, errors and cost as for :func:`orient2d_batch`.

@@ -121,5 +121,3 @@ def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:
     if smallest < constants.MIN_UNIT_DEGREE_4:
         return coordinates, context
     return np.ldexp(coordinates, exponent), _context(largest, smallest)
-
-

@@ -7,7 +7,7 @@ from exactkernel.constants import ORIENT2D_BOUND
 from exactkernel.context import ORIENT2D_ROW, Context, guarded_context
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.expansions import two_diff
-from exactkernel.jit import jit
+from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import products_difference, safe_degree_2
 from exactkernel.rational import diametral_from_doubles, diametral_rational, raise_if_interrupted
 from exactkernel.types import PointLike, Sign, Stage
@@ -15,12 +15,20 @@ from exactkernel.types import PointLike, Sign, Stage
 __all__ = ["diametral", "diametral_adaptive", "diametral_staged"]
 
 
+@jit_inline
+def diametral_filter(bound: float, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
+    """Return the sign of diametral if the error bound certifies it, else 0."""
+    left = (px - ax) * (bx - px)
+    right = (py - ay) * (py - by)
+    det = left - right
+    error = bound * (abs(left) + abs(right))
+    return 1 if det > error else (-1 if -det > error else 0)
+
+
 @jit
 def diametral_slow(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
     """Return stage * 4 + sign + 1 for a call that the filter of the loop did not decide."""
     p, q, r, s = px - ax, bx - px, py - ay, py - by
-    left, right = p * q, r * s
-    det = left - right
     if c.orient2d_bound == math.inf:  # outside the window: guard this call by itself
         if not (
             safe_degree_2(ax) and safe_degree_2(ay) and safe_degree_2(bx)
@@ -30,12 +38,11 @@ def diametral_slow(c: Context, ax: float, ay: float, bx: float, by: float, px: f
             while answer == 0:  # 0: the callback was interrupted before it could answer
                 answer = diametral_from_doubles(ax, ay, bx, by, px, py)
             return RATIONAL + (answer - 2)
-        bound = ORIENT2D_BOUND * (abs(left) + abs(right))
-        if det > bound:
-            return FILTER + 1
-        if -det > bound:
-            return FILTER - 1
+        sign = diametral_filter(ORIENT2D_BOUND, ax, ay, bx, by, px, py)
+        if sign != 0:
+            return FILTER + sign
     elif max(max(abs(p), abs(q)), max(abs(r), abs(s))) <= c.grid_limit:
+        det = p * q - r * s
         return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
     p, p_tail = two_diff(px, ax)
     q, q_tail = two_diff(bx, px)
@@ -45,21 +52,21 @@ def diametral_slow(c: Context, ax: float, ay: float, bx: float, by: float, px: f
 
 
 @jit
-def diametral_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
-    """Return the exact sign of diametral in a compiled loop; tallies the stage in ``c.counts``."""
-    left = (px - ax) * (bx - px)
-    right = (py - ay) * (py - by)
-    det = left - right
-    bound = c.orient2d_bound * (abs(left) + abs(right))
-    if det > bound:
-        c.counts[ORIENT2D_ROW, 0] += 1
-        return 1
-    if -det > bound:
-        c.counts[ORIENT2D_ROW, 0] += 1
-        return -1
+def diametral_exact(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
+    """Return the sign that the filter could not certify, and tally the stage that did."""
     code = diametral_slow(c, ax, ay, bx, by, px, py)
     c.counts[ORIENT2D_ROW, code >> 2] += 1
     return (code & 3) - 1
+
+
+@jit_inline
+def diametral_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, px: float, py: float) -> int:
+    """Return the exact sign of diametral in a compiled loop; tallies the stage in ``c.counts``."""
+    sign = diametral_filter(c.orient2d_bound, ax, ay, bx, by, px, py)
+    if sign != 0:
+        c.counts[ORIENT2D_ROW, 0] += 1
+        return sign
+    return diametral_exact(c, ax, ay, bx, by, px, py)
 
 
 _GUARDED = guarded_context()

@@ -170,8 +170,16 @@ def expansion_sign(e: FloatArray, ne: int) -> int:
 
 @jit
 def determinant_2x2(
-    p: float, p_tail: float, q: float, q_tail: float, r: float, r_tail: float, s: float, s_tail: float,
-    h: FloatArray, scratch: FloatArray,
+    p: float,
+    p_tail: float,
+    q: float,
+    q_tail: float,
+    r: float,
+    r_tail: float,
+    s: float,
+    s_tail: float,
+    h: FloatArray,
+    scratch: FloatArray,
 ) -> int:
     """Write p q - r s of exact pairs into h (16); uses 32 doubles of scratch."""
     e, f, scaled, total = scratch[0:2], scratch[2:4], scratch[4:8], scratch[8:16]

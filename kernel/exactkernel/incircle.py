@@ -13,7 +13,7 @@ from exactkernel.context import INCIRCLE_ROW, Context, guarded_context
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import determinant_2x2, expansion_product, expansion_sign, expansion_sum, two_diff
-from exactkernel.jit import jit
+from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import (
     RationalPoint,
@@ -41,8 +41,18 @@ def safe_degree_4(x: float) -> bool:
 
 @jit
 def incircle_double_double(
-    a: float, at: float, A: float, At: float, b: float, bt: float, B: float, Bt: float,
-    c: float, ct: float, C: float, Ct: float,
+    a: float,
+    at: float,
+    A: float,
+    At: float,
+    b: float,
+    bt: float,
+    B: float,
+    Bt: float,
+    c: float,
+    ct: float,
+    C: float,
+    Ct: float,
 ) -> float:
     """Return the determinant of rows (a, A), (b, B), (c, C) (pairs) in double-double, rounded to one double."""
     bC, bCt = dd_multiply(b, bt, C, Ct)
@@ -71,8 +81,20 @@ def lift_double_double(x: float, xt: float, y: float, yt: float) -> tuple[float,
 
 @jit
 def lifted_term(
-    a: float, at: float, A: float, At: float, b: float, bt: float, B: float, Bt: float,
-    c: float, ct: float, C: float, Ct: float, h: FloatArray, scratch: FloatArray,
+    a: float,
+    at: float,
+    A: float,
+    At: float,
+    b: float,
+    bt: float,
+    B: float,
+    Bt: float,
+    c: float,
+    ct: float,
+    C: float,
+    Ct: float,
+    h: FloatArray,
+    scratch: FloatArray,
 ) -> int:
     """Write (a^2 + A^2) (b C - c B) of exact pairs into h (512) as an expansion; uses 608 doubles of scratch."""
     cross, lift = scratch[0:16], scratch[16:32]
@@ -83,8 +105,19 @@ def lifted_term(
 
 @jit
 def incircle_expansion(
-    a: float, at: float, A: float, At: float, b: float, bt: float, B: float, Bt: float,
-    c: float, ct: float, C: float, Ct: float, scratch: FloatArray,
+    a: float,
+    at: float,
+    A: float,
+    At: float,
+    b: float,
+    bt: float,
+    B: float,
+    Bt: float,
+    c: float,
+    ct: float,
+    C: float,
+    Ct: float,
+    scratch: FloatArray,
 ) -> int:
     """Return the exact sign of the determinant of rows (a, A), (b, B), (c, C), all exact pairs."""
     term, sum_2, sum_3, rest = scratch[0:512], scratch[512:1024], scratch[1024:2048], scratch[2048:2656]
@@ -96,20 +129,33 @@ def incircle_expansion(
     return expansion_sign(total, expansion_sum(sum_3, n_3, term, n, total))
 
 
-@jit
-def incircle_slow(
-    k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
-) -> int:
-    """Return stage * 4 + sign + 1 for a call that the filter of the loop did not decide."""
-    a, A = ax - dx, ay - dy
-    b, B = bx - dx, by - dy
-    c, C = cx - dx, cy - dy
+@jit_inline
+def determinant_and_permanent(a: float, A: float, b: float, B: float, c: float, C: float) -> tuple[float, float]:
+    """Return the determinant of rows (a, A, a^2 + A^2), ..., and the same sum with every term taken absolutely."""
     bC, cB, cA, aC, aB, bA = b * C, c * B, c * A, a * C, a * B, b * A
     lift_a, lift_b, lift_c = a * a + A * A, b * b + B * B, c * c + C * C
     det = lift_a * (bC - cB) + lift_b * (cA - aC) + lift_c * (aB - bA)
     permanent = (
         (abs(bC) + abs(cB)) * lift_a + (abs(cA) + abs(aC)) * lift_b + (abs(aB) + abs(bA)) * lift_c
     )  # fmt: skip
+    return det, permanent
+
+
+@jit_inline
+def incircle_filter(
+    bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> int:
+    """Return the sign of incircle if the error bound certifies it, else 0."""
+    det, permanent = determinant_and_permanent(ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy)
+    error = bound * permanent
+    return 1 if det > error else (-1 if -det > error else 0)
+
+
+@jit
+def incircle_slow(
+    k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> int:
+    """Return stage * 4 + sign + 1 for a call that the filter of the loop did not decide."""
     if k.incircle_bound == math.inf:  # outside the window: guard this call by itself
         if not (
             safe_degree_4(ax) and safe_degree_4(ay) and safe_degree_4(bx) and safe_degree_4(by)
@@ -119,19 +165,18 @@ def incircle_slow(
             while answer == 0:  # 0: the callback was interrupted before it could answer
                 answer = incircle_from_doubles(ax, ay, bx, by, cx, cy, dx, dy)
             return RATIONAL + (answer - 2)
-        bound = INCIRCLE_BOUND * permanent
-        if det > bound:
-            return FILTER + 1
-        if -det > bound:
-            return FILTER - 1
-    elif max(max(max(abs(a), abs(A)), max(abs(b), abs(B))), max(abs(c), abs(C))) <= k.grid_limit:
-        return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
+        sign = incircle_filter(INCIRCLE_BOUND, ax, ay, bx, by, cx, cy, dx, dy)
+        if sign != 0:
+            return FILTER + sign
     a, at = two_diff(ax, dx)
     A, At = two_diff(ay, dy)
     b, bt = two_diff(bx, dx)
     B, Bt = two_diff(by, dy)
     c, ct = two_diff(cx, dx)
     C, Ct = two_diff(cy, dy)
+    det, permanent = determinant_and_permanent(a, A, b, B, c, C)
+    if max(max(max(abs(a), abs(A)), max(abs(b), abs(B))), max(abs(c), abs(C))) <= k.grid_limit:
+        return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
     det = incircle_double_double(a, at, A, At, b, bt, B, Bt, c, ct, C, Ct)
     bound = DD_BOUND * permanent
     if det > bound:
@@ -142,28 +187,25 @@ def incircle_slow(
 
 
 @jit
+def incircle_exact(
+    k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> int:
+    """Return the sign that the filter could not certify, and tally the stage that did."""
+    code = incircle_slow(k, ax, ay, bx, by, cx, cy, dx, dy)
+    k.counts[INCIRCLE_ROW, code >> 2] += 1
+    return (code & 3) - 1
+
+
+@jit_inline
 def incircle_adaptive(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> int:
     """Return the exact sign of incircle in a compiled loop; tallies the stage in ``k.counts``."""
-    a, A = ax - dx, ay - dy
-    b, B = bx - dx, by - dy
-    c, C = cx - dx, cy - dy
-    bC, cB, cA, aC, aB, bA = b * C, c * B, c * A, a * C, a * B, b * A
-    lift_a, lift_b, lift_c = a * a + A * A, b * b + B * B, c * c + C * C
-    det = lift_a * (bC - cB) + lift_b * (cA - aC) + lift_c * (aB - bA)
-    bound = k.incircle_bound * (
-        (abs(bC) + abs(cB)) * lift_a + (abs(cA) + abs(aC)) * lift_b + (abs(aB) + abs(bA)) * lift_c
-    )
-    if det > bound:
+    sign = incircle_filter(k.incircle_bound, ax, ay, bx, by, cx, cy, dx, dy)
+    if sign != 0:
         k.counts[INCIRCLE_ROW, 0] += 1
-        return 1
-    if -det > bound:
-        k.counts[INCIRCLE_ROW, 0] += 1
-        return -1
-    code = incircle_slow(k, ax, ay, bx, by, cx, cy, dx, dy)
-    k.counts[INCIRCLE_ROW, code >> 2] += 1
-    return (code & 3) - 1
+        return sign
+    return incircle_exact(k, ax, ay, bx, by, cx, cy, dx, dy)
 
 
 @jit
@@ -214,14 +256,26 @@ def break_tie(
 
 
 @jit
+def incircle_perturbed_exact(
+    k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> int:
+    """Return the perturbed sign that the filter could not certify, and tally the stage that did."""
+    sign = incircle_exact(k, ax, ay, bx, by, cx, cy, dx, dy)
+    if sign != 0:
+        return sign
+    return break_tie(k, ax, ay, bx, by, cx, cy, dx, dy)
+
+
+@jit_inline
 def incircle_perturbed_adaptive(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> int:
     """Return the sign of incircle in a compiled loop, ties broken by :func:`break_tie`."""
-    sign = incircle_adaptive(k, ax, ay, bx, by, cx, cy, dx, dy)
+    sign = incircle_filter(k.incircle_bound, ax, ay, bx, by, cx, cy, dx, dy)
     if sign != 0:
+        k.counts[INCIRCLE_ROW, 0] += 1
         return sign
-    return break_tie(k, ax, ay, bx, by, cx, cy, dx, dy)
+    return incircle_perturbed_exact(k, ax, ay, bx, by, cx, cy, dx, dy)
 
 
 _GUARDED = guarded_context()

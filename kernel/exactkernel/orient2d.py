@@ -13,7 +13,7 @@ from exactkernel.codes import DECODED, DOUBLE_DOUBLE, EXPANSION, FILTER, GRID, R
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import determinant_2x2, expansion_sign, two_diff
-from exactkernel.jit import jit
+from exactkernel.jit import jit, jit_inline
 from exactkernel.rational import orient2d_from_doubles, orient2d_rational, raise_if_interrupted
 from exactkernel.types import FloatArray, PointLike, Sign, Stage
 
@@ -28,7 +28,14 @@ def safe_degree_2(x: float) -> bool:
 
 @jit
 def products_difference(
-    p: float, p_tail: float, q: float, q_tail: float, r: float, r_tail: float, s: float, s_tail: float,
+    p: float,
+    p_tail: float,
+    q: float,
+    q_tail: float,
+    r: float,
+    r_tail: float,
+    s: float,
+    s_tail: float,
     scratch: FloatArray,
 ) -> int:
     """Return stage * 4 + sign + 1 of p q - r s for exact pairs: double-double, then expansions."""
@@ -45,12 +52,20 @@ def products_difference(
     return EXPANSION + expansion_sign(h, n)
 
 
+@jit_inline
+def orient2d_filter(bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    """Return the sign of orient2d if the error bound certifies it, else 0."""
+    left = (ax - cx) * (by - cy)
+    right = (ay - cy) * (bx - cx)
+    det = left - right
+    error = bound * (abs(left) + abs(right))
+    return 1 if det > error else (-1 if -det > error else 0)
+
+
 @jit
 def orient2d_slow(c: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """Return stage * 4 + sign + 1 for a call that the filter of the loop did not decide."""
     p, q, r, s = ax - cx, by - cy, ay - cy, bx - cx
-    left, right = p * q, r * s
-    det = left - right
     if c.orient2d_bound == math.inf:  # outside the window: guard this call by itself
         if not (
             safe_degree_2(ax) and safe_degree_2(ay) and safe_degree_2(bx)
@@ -60,12 +75,11 @@ def orient2d_slow(c: Context, ax: float, ay: float, bx: float, by: float, cx: fl
             while answer == 0:  # 0: the callback was interrupted before it could answer
                 answer = orient2d_from_doubles(ax, ay, bx, by, cx, cy)
             return RATIONAL + (answer - 2)
-        bound = ORIENT2D_BOUND * (abs(left) + abs(right))
-        if det > bound:
-            return FILTER + 1
-        if -det > bound:
-            return FILTER - 1
+        sign = orient2d_filter(ORIENT2D_BOUND, ax, ay, bx, by, cx, cy)
+        if sign != 0:
+            return FILTER + sign
     elif max(max(abs(p), abs(q)), max(abs(r), abs(s))) <= c.grid_limit:
+        det = p * q - r * s
         return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
     p, p_tail = two_diff(ax, cx)
     q, q_tail = two_diff(by, cy)
@@ -75,21 +89,21 @@ def orient2d_slow(c: Context, ax: float, ay: float, bx: float, by: float, cx: fl
 
 
 @jit
-def orient2d_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
-    """Return the exact sign of orient2d in a compiled loop; tallies the stage in ``c.counts``."""
-    left = (ax - cx) * (by - cy)
-    right = (ay - cy) * (bx - cx)
-    det = left - right
-    bound = c.orient2d_bound * (abs(left) + abs(right))
-    if det > bound:
-        c.counts[ORIENT2D_ROW, 0] += 1
-        return 1
-    if -det > bound:
-        c.counts[ORIENT2D_ROW, 0] += 1
-        return -1
+def orient2d_exact(c: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    """Return the sign that the filter could not certify, and tally the stage that did."""
     code = orient2d_slow(c, ax, ay, bx, by, cx, cy)
     c.counts[ORIENT2D_ROW, code >> 2] += 1
     return (code & 3) - 1
+
+
+@jit_inline
+def orient2d_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    """Return the exact sign of orient2d in a compiled loop; tallies the stage in ``c.counts``."""
+    sign = orient2d_filter(c.orient2d_bound, ax, ay, bx, by, cx, cy)
+    if sign != 0:
+        c.counts[ORIENT2D_ROW, 0] += 1
+        return sign
+    return orient2d_exact(c, ax, ay, bx, by, cx, cy)
 
 
 _GUARDED = guarded_context()
