@@ -13,10 +13,13 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numba
-from numba.core import config
+from numba.core import config as _numba_config
+
+#: numba's settings; their names are made at run time, out of reach of a type checker.
+_config: Any = _numba_config
 
 __all__ = ["COMPILED", "cache_directory", "is_cache_warm", "jit", "jit_inline"]
 
@@ -24,7 +27,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 #: False under ``NUMBA_DISABLE_JIT=1``: the same source runs interpreted, for coverage, mutation testing and stepping.
-COMPILED: bool = not config.DISABLE_JIT
+COMPILED: bool = not _config.DISABLE_JIT
 
 _UNUSED_AFTER_SECONDS = 30 * 24 * 3600
 
@@ -95,14 +98,15 @@ def is_cache_warm() -> bool:
 def _compile(function: Callable[P, R], *, always_inline: bool) -> Callable[P, R]:
     if not COMPILED:
         return function
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(_CACHE)
+    decorate = numba.njit(  # type: ignore[call-overload]  # numba's types leave out _nrt
+        cache=True, fastmath=False, _nrt=False, forceinline=always_inline
+    )
+    before = _config.CACHE_DIR
+    _config.CACHE_DIR = str(_CACHE)
     try:
-        compiled: Callable[P, R] = numba.njit(cache=True, fastmath=False, _nrt=False, forceinline=always_inline)(
-            function
-        )
+        compiled: Callable[P, R] = decorate(function)
     finally:
-        config.CACHE_DIR = before
+        _config.CACHE_DIR = before
     return compiled
 
 

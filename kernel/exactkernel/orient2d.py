@@ -2,6 +2,7 @@
 
 import math
 
+from exactkernel.codes import DECODED, DOUBLE_DOUBLE, EXPANSION, FILTER, GRID, RATIONAL
 from exactkernel.constants import (
     DD_BOUND,
     MAX_COORDINATE_DEGREE_2,
@@ -9,7 +10,6 @@ from exactkernel.constants import (
     ORIENT2D_BOUND,
 )
 from exactkernel.context import ORIENT2D_ROW, Context, guarded_context
-from exactkernel.codes import DECODED, DOUBLE_DOUBLE, EXPANSION, FILTER, GRID, RATIONAL
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import determinant_2x2, expansion_sign, two_diff

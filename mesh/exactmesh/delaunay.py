@@ -20,9 +20,18 @@ from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin, split_face, swap
-from exactmesh.ordering import insertion_order
+from exactmesh.errors import CollinearPointsError, TooFewPointsError, TooManyPointsError
+from exactmesh.extract import triangles_of
+from exactmesh.ordering import IndexArray, insertion_order
+from exactmesh.triangulation import Triangulation, work_of
 
-Progress: TypeAlias = "Callable[[int, int], None]"
+__all__ = ["MAX_POINTS", "Progress", "delaunay"]
+
+#: Called with (done, total).
+Progress: TypeAlias = Callable[[int, int], None]
+
+#: 3 n edges of four quarter-edges each must be numbered in 31 bits.
+MAX_POINTS = 2**31 // 12
 
 _CHUNK = 1 << 17  # points between two looks at Ctrl-C and the progress bar
 
@@ -107,9 +116,45 @@ def legalize(k: Context, xy: FloatArray, ring: EdgeArray, org: EdgeArray, ghost:
 
 
 @jit
+def first_triangle(k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArray, org: EdgeArray) -> int:
+    """Move three points that are not collinear to the front and build their triangle and its three ghosts.
+
+    Returns the number of edges: 6, or 0 if all points lie on one line.
+    """
+    n = len(xy)
+    b = 1
+    while b < n and xy[b, 0] == xy[0, 0] and xy[b, 1] == xy[0, 1]:
+        b += 1
+    c = b + 1
+    turn = 0
+    while c < n:
+        turn = orient(k, xy, 0, b, c)
+        if turn != 0:
+            break
+        c += 1
+    if turn == 0:
+        return 0
+    for position, chosen in ((1, b), (2, c)):
+        order[position], order[chosen] = order[chosen], order[position]
+        for axis in range(2):
+            xy[position, axis], xy[chosen, axis] = xy[chosen, axis], xy[position, axis]
+    second, third = (1, 2) if turn > 0 else (2, 1)
+    org[0] = org[5] = 0
+    org[2] = org[1] = second
+    org[4] = org[3] = third
+    for e in range(0, 12, 4):
+        f = (e + 4) % 12
+        link_ring(ring, e, f)
+        link_ring(ring, f ^ 2, e ^ 2)
+    split_face(ring, org, 2, 12, n)  # the ghost, in the outer face
+    return 6
+
+
+@jit
 def insert_range(
     k: Context,
     xy: FloatArray,
+    order: IndexArray,
     ring: EdgeArray,
     org: EdgeArray,
     twin: EdgeArray,
@@ -124,6 +169,11 @@ def insert_range(
     """
     ghost = len(xy)
     flips = 0
+    if edges == 0:
+        edges = first_triangle(k, xy, order, ring, org)
+        if edges == 0:
+            return start, edges, flips
+        first = 3
     for p in range(first, stop):
         e, zeros = locate(k, xy, ring, org, ghost, start, p)
         if zeros == 2:
@@ -140,3 +190,102 @@ def insert_range(
             e = beyond
         flips += legalize(k, xy, ring, org, ghost, e, p)
     return start, edges, flips
+
+
+def _refuse_flat(points: FloatArray) -> None:
+    if (points == points[0]).all():
+        raise CollinearPointsError(f"all {len(points)} points are {points[0].tolist()}: they span no triangle")
+    raise CollinearPointsError(f"all {len(points)} points lie on one line: they span no triangle")
+
+
+def _insert_all(
+    xy: FloatArray, k: Context, order: IndexArray, progress: Progress | None
+) -> tuple[EdgeArray, EdgeArray, EdgeArray, int, int]:
+    """Build the quad-edge of xy (in order of insertion); return (ring, org, twin, edges, flips)."""
+    n = len(xy)
+    ring = np.empty(12 * n, dtype=np.int32)  # n vertices and the ghost have 3 (n + 1) - 6 edges
+    org = np.empty(6 * n, dtype=np.int32)
+    twin = np.arange(n, dtype=np.int32)
+    start = edges = flips = 0
+    for first in range(0, n, _CHUNK):
+        stop = min(first + _CHUNK, n)
+        start, edges, more = insert_range(k, xy, order, ring, org, twin, first, stop, start, edges)
+        flips += more
+        raise_if_interrupted()
+        if edges == 0:
+            break
+        if progress is not None:
+            progress(stop, n)
+    return ring, org, twin, int(edges), int(flips)
+
+
+def _number_vertices(order: IndexArray, twin: EdgeArray) -> tuple[IndexArray, EdgeArray, EdgeArray]:
+    """Return (the input points that become vertices, the vertex at each position of order, of each input point).
+
+    The vertices are numbered in the order of the input; of equal points the first is the vertex.
+    """
+    n = len(order)
+    representative = np.empty(n, dtype=np.int32)
+    if (twin == np.arange(n, dtype=np.int32)).all():
+        representative[order] = vertex = order.astype(np.int32)
+        return np.arange(n), vertex, np.arange(n, dtype=np.int32)
+    first = np.full(n, n, dtype=np.int64)  # of each position: the smallest input index of the points that lie there
+    np.minimum.at(first, twin, order)
+    kept = np.sort(first[first < n])
+    vertex = np.full(n, -1, dtype=np.int32)
+    places = np.flatnonzero(first < n)
+    vertex[places] = np.searchsorted(kept, first[places])
+    representative[order] = vertex[twin]
+    return kept, vertex, representative
+
+
+def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None = None) -> Triangulation:
+    """Return the Delaunay triangulation of the points: exact, and unique.
+
+    Cocircular points are triangulated by a symbolic perturbation (:func:`exactkernel.incircle_perturbed`), so the result
+    depends on the points alone: it is the same for every seed and every order of the input, up to the numbering.
+
+    Args:
+        points: (n, 2) finite coordinates; float64, or any numeric dtype whose values are doubles exactly.
+        seed: chooses the random order of insertion, and so the time it takes, never the result.
+        progress: called now and then with (points done, points in all).
+
+    Returns:
+        A :class:`Triangulation` of the distinct points. ``representative[i]`` is the vertex that stands for point i.
+
+    Raises:
+        TooFewPointsError: fewer than three points.
+        CollinearPointsError: all points lie on one line, or in one place.
+        NonFiniteError: a coordinate is NaN or infinite; ``indices`` names the points.
+        CoordinateError: a value would have to be rounded to become a double.
+        ShapeError: not an array of shape (n, 2).
+
+    Expected O(n log n) for any input, O(n) after sorting for most. Reference [Guibas 1985], [Amenta 2003].
+
+    >>> from exactmesh import delaunay
+    >>> mesh = delaunay([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.5)])
+    >>> mesh
+    Triangulation(5 vertices, 4 triangles)
+    >>> mesh.hull.tolist()
+    [0, 1, 2, 3]
+    """
+    given = finite_points(points)
+    if len(given) < 3:
+        raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
+    if len(given) > MAX_POINTS:
+        raise TooManyPointsError(f"{len(given)} points; at most {MAX_POINTS} fit 32-bit edge numbers")
+    scaled, k = scaled_into_window(given)
+    order = insertion_order(scaled, seed)
+    xy = scaled[order]
+    ring, org, twin, edges, flips = _insert_all(xy, k, order, progress)
+    if edges == 0:
+        _refuse_flat(given)
+    kept, vertex, representative = _number_vertices(order, twin)
+    triangles, neighbors = triangles_of(ring, org, edges, len(xy), vertex)
+    return Triangulation(
+        points=given[kept],
+        triangles=triangles,
+        neighbors=neighbors,
+        representative=representative,
+        work=work_of(k, flips),
+    )

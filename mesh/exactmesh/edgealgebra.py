@@ -151,7 +151,7 @@ def splice(ring: EdgeArray, a: int, b: int) -> None:
 @jit
 def left_next(ring: EdgeArray, e: int) -> int:
     """Return lnext of a primal edge."""
-    return ring[e ^ 3] ^ 3
+    return int(ring[e ^ 3]) ^ 3
 
 
 @jit

@@ -18,12 +18,17 @@ __all__ = [
     "NonFiniteError",
     "ShapeError",
     "TooFewPointsError",
+    "TooManyPointsError",
     "TopologyError",
 ]
 
 
 class TooFewPointsError(ExactMeshError):
     """Fewer than three points span no triangle."""
+
+
+class TooManyPointsError(ExactMeshError):
+    """More points than the edge numbers can hold."""
 
 
 class CollinearPointsError(ExactMeshError):

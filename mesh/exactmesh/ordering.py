@@ -11,7 +11,7 @@ import numpy.typing as npt
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray
 
-__all__ = ["insertion_order"]
+__all__ = ["IndexArray", "insertion_order"]
 
 UInt64Array = npt.NDArray[np.uint64]
 IndexArray = npt.NDArray[np.int64]

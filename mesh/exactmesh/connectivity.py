@@ -1,0 +1,86 @@
+"""Edges, hull and quad-edge of arrays of triangles and neighbors."""
+
+import numpy as np
+
+from exactkernel.jit import jit
+from exactkernel.types import FloatArray, IntArray
+from exactmesh.edgealgebra import EdgeArray, link_ring
+from exactmesh.quadedge import QuadEdge
+
+__all__ = ["edges_of", "hull_of", "quad_edge_of", "rings_of"]
+
+
+def edges_of(triangles: IntArray, neighbors: IntArray) -> IntArray:
+    """Return each edge once, int32 (k, 2), with the triangle of the larger number on its left. O(m)."""
+    own = np.arange(len(triangles), dtype=np.int32)[:, None] > neighbors
+    starts, ends = np.roll(triangles, -1, axis=1), np.roll(triangles, -2, axis=1)
+    return np.stack([starts[own], ends[own]], axis=1)
+
+
+def hull_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> IntArray:
+    """Return the boundary cycle, int32, counterclockwise from its lexicographically smallest vertex. O(m)."""
+    rows, corners = np.nonzero(neighbors < 0)
+    starts, ends = triangles[rows, (corners + 1) % 3], triangles[rows, (corners + 2) % 3]
+    after = dict(zip(starts.tolist(), ends.tolist(), strict=True))
+    first = int(starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]])
+    cycle = [first]
+    while after[cycle[-1]] != first:
+        cycle.append(after[cycle[-1]])
+    return np.array(cycle, dtype=np.int32)
+
+
+@jit
+def _fill_rings(
+    triangles: IntArray, neighbors: IntArray, quarter: EdgeArray, ring: EdgeArray, vertex: EdgeArray, face: EdgeArray
+) -> int:
+    """Write the quad-edge of the triangles; return the number of edges. ``quarter`` (m, 3) is scratch.
+
+    ``quarter[t, i]`` becomes the edge opposite to corner i that has triangle t on its left.
+    """
+    edges = 0
+    for t in range(len(triangles)):
+        for i in range(3):
+            u = neighbors[t, i]
+            start, stop = triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+            if u >= 0 and u < t:
+                j = 0
+                while triangles[u, (j + 1) % 3] != stop or triangles[u, (j + 2) % 3] != start:
+                    j += 1
+                e = quarter[u, j] ^ 2
+            else:
+                e = 4 * edges
+                edges += 1
+                face[(e ^ 1) >> 1] = -1
+            quarter[t, i] = e
+            vertex[e >> 1] = start
+            vertex[(e ^ 2) >> 1] = stop
+            face[(e ^ 3) >> 1] = t
+    for t in range(len(triangles)):
+        for i in range(3):
+            link_ring(ring, quarter[t, i], quarter[t, (i + 1) % 3])
+    for t in range(len(triangles)):
+        for i in range(3):
+            if neighbors[t, i] < 0:  # the next hull edge clockwise: turn round the start, through triangles
+                start, u, j = triangles[t, (i + 1) % 3], t, (i + 2) % 3
+                while neighbors[u, j] >= 0:
+                    u, j = neighbors[u, j], 0
+                    while triangles[u, (j + 2) % 3] != start:
+                        j += 1
+                link_ring(ring, quarter[t, i] ^ 2, quarter[u, j] ^ 2)
+    return edges
+
+
+def rings_of(triangles: IntArray, neighbors: IntArray) -> tuple[EdgeArray, EdgeArray, EdgeArray]:
+    """Return (ring, vertex, face) as :meth:`QuadEdge.from_arrays` takes them. O(m)."""
+    hull = int((neighbors < 0).sum())
+    edges = (3 * len(triangles) + hull) // 2
+    ring = np.empty(4 * edges, dtype=np.int32)
+    vertex = np.empty(2 * edges, dtype=np.int32)
+    face = np.empty(2 * edges, dtype=np.int32)
+    _fill_rings(triangles, neighbors, np.empty_like(neighbors), ring, vertex, face)
+    return ring, vertex, face
+
+
+def quad_edge_of(triangles: IntArray, neighbors: IntArray) -> QuadEdge:
+    """Return the quad-edge of a triangulation: its outer face is OUTSIDE. O(m)."""
+    return QuadEdge.from_arrays(*rings_of(triangles, neighbors))
