@@ -5,9 +5,9 @@ import numpy.typing as npt
 
 from exactkernel.coordinates import doubles_of
 from exactkernel.errors import CoordinateError, NonFiniteError, ShapeError
-from exactkernel.types import FloatArray
+from exactkernel.types import FloatArray, IntArray
 
-__all__ = ["exact_doubles", "finite_points"]
+__all__ = ["exact_doubles", "finite_points", "vertex_indices"]
 
 _NAMED = 5  # culprits that a message spells out
 
@@ -81,3 +81,29 @@ def finite_points(points: npt.ArrayLike, name: str = "points") -> FloatArray:
                 f"{_culprits(bad, name)}: {doubles[bad[0]].tolist()} is not finite", indices=bad.tolist()
             )
     return doubles
+
+
+def vertex_indices(triangles: npt.ArrayLike, name: str = "triangles") -> IntArray:
+    """Return triangles as a C-contiguous int32 array (m, 3); whether the vertices exist is for the caller to say.
+
+    Raises:
+        ShapeError: the shape is not (m, 3), the dtype is not integer, or an index needs more than 31 bits.
+    """
+    try:
+        array = np.asarray(triangles)
+    except ValueError as error:  # ragged
+        raise ShapeError(f"{name} is not an array of shape (m, 3): {error}") from None
+    if array.size == 0 and array.ndim <= 2:
+        return np.empty((0, 3), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(f"{name} has shape {array.shape}; expected (m, 3)")
+    if array.dtype.kind not in "iu":
+        raise ShapeError(f"{name} has dtype {array.dtype}; expected integers")
+    limits = np.iinfo(np.int32)
+    large = np.flatnonzero(((array < limits.min) | (array > limits.max)).any(axis=1)) if array.itemsize > 2 else ()
+    if len(large):
+        raise ShapeError(
+            f"{_culprits(np.asarray(large), name)}: {array[large[0]].tolist()} does not fit 32 bits",
+            indices=list(large),
+        )
+    return np.ascontiguousarray(array, dtype=np.int32)

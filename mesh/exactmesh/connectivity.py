@@ -1,13 +1,39 @@
-"""Edges, hull and quad-edge of arrays of triangles and neighbors."""
+"""What follows from an array of triangles: neighbors, edges, hull, and the rings of its quad-edge."""
 
 import numpy as np
 
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import EdgeArray, link_ring
-from exactmesh.quadedge import QuadEdge
+from exactmesh.errors import TopologyError
 
-__all__ = ["edges_of", "hull_of", "quad_edge_of", "rings_of"]
+__all__ = ["edges_of", "hull_of", "neighbors_of", "rings_of"]
+
+
+def neighbors_of(triangles: IntArray) -> IntArray:
+    """Return the triangle across the edge opposite to each corner, int32 (m, 3), -1 where there is none. O(m log m).
+
+    Raises:
+        TopologyError: a directed edge is in two triangles: they overlap, or one is clockwise.
+    """
+    start = np.roll(triangles, -1, axis=1).reshape(-1).astype(np.int64)
+    end = np.roll(triangles, -2, axis=1).reshape(-1).astype(np.int64)
+    size = int(triangles.max(initial=0)) + 1
+    forward, backward = start * size + end, end * size + start
+    order = np.argsort(forward)
+    ranked = forward[order]
+    twice = np.flatnonzero(ranked[1:] == ranked[:-1])
+    if twice.size:
+        first, second = sorted(order[twice[0] : twice[0] + 2].tolist())
+        raise TopologyError(
+            f"triangles {first // 3} and {second // 3} both have the edge {start[first]} -> {end[first]}",
+            indices=[first // 3, second // 3],
+        )
+    place = np.searchsorted(ranked, backward)
+    place[place == len(ranked)] = 0
+    found = ranked[place] == backward
+    neighbors: IntArray = np.where(found, order[place] // 3, -1).astype(np.int32).reshape(-1, 3)
+    return neighbors
 
 
 def edges_of(triangles: IntArray, neighbors: IntArray) -> IntArray:
@@ -79,8 +105,3 @@ def rings_of(triangles: IntArray, neighbors: IntArray) -> tuple[EdgeArray, EdgeA
     face = np.empty(2 * edges, dtype=np.int32)
     _fill_rings(triangles, neighbors, np.empty_like(neighbors), ring, vertex, face)
     return ring, vertex, face
-
-
-def quad_edge_of(triangles: IntArray, neighbors: IntArray) -> QuadEdge:
-    """Return the quad-edge of a triangulation: its outer face is OUTSIDE. O(m)."""
-    return QuadEdge.from_arrays(*rings_of(triangles, neighbors))

@@ -276,15 +276,15 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
         raise TooManyPointsError(f"{len(given)} points; at most {MAX_POINTS} fit 32-bit edge numbers")
     scaled, k = scaled_into_window(given)
     order = insertion_order(scaled, seed)
-    xy = scaled[order]
+    xy = scaled.take(order, axis=0)
     ring, org, twin, edges, flips = _insert_all(xy, k, order, progress)
     if edges == 0:
         _refuse_flat(given)
     kept, vertex, representative = _number_vertices(order, twin)
-    triangles, neighbors = triangles_of(ring, org, edges, len(xy), vertex)
+    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), ghost=len(xy))
     return Triangulation(
         points=given[kept],
-        triangles=triangles,
+        triangles=vertex.take(triangles),
         neighbors=neighbors,
         representative=representative,
         work=work_of(k, flips),

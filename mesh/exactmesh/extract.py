@@ -1,4 +1,4 @@
-"""From the quad-edge with its ghost to arrays of triangles and neighbors."""
+"""From edge rings to arrays of triangles and neighbors."""
 
 import numpy as np
 
@@ -6,47 +6,52 @@ from exactkernel.jit import jit
 from exactkernel.types import IntArray
 from exactmesh.edgealgebra import EdgeArray, left_next, origin
 
-__all__ = ["triangles_of"]
+__all__ = ["NO_GHOST", "OUTER", "triangles_of"]
+
+NO_GHOST = -1
+#: Slot of an edge whose left face is no triangle of the result.
+OUTER = -2
 
 
 @jit
-def _collect(ring: EdgeArray, org: EdgeArray, edges: int, ghost: int, vertex: EdgeArray, triangles: IntArray,
-             neighbors: IntArray, slot: EdgeArray) -> int:  # fmt: skip
-    """Write the triangles and their neighbors; return how many there are.
+def _collect(
+    ring: EdgeArray, org: EdgeArray, ghost: int, triangles: IntArray, neighbors: IntArray, slot: EdgeArray
+) -> int:
+    """Write the triangles and their neighbors, flat; return how many there are.
 
-    ``slot[e >> 1]``, -1 before, becomes 3 t + i for the edge e opposite to corner i of triangle t.
+    ``slot[e >> 1]`` becomes 3 t + i for the edge e opposite to corner i of triangle t.
     """
-    m = 0
-    for e in range(0, 4 * edges, 2):
-        if slot[e >> 1] >= 0:
+    size = 0
+    for half in range(len(slot)):
+        if slot[half] != -1:
             continue
+        e = 2 * half
         f = left_next(ring, e)
         g = left_next(ring, f)
         a, b, c = origin(org, e), origin(org, f), origin(org, g)
-        if a == ghost or b == ghost or c == ghost:
+        if a == ghost or b == ghost or c == ghost or left_next(ring, g) != e:
             continue
-        triangles[m, 0], triangles[m, 1], triangles[m, 2] = vertex[a], vertex[b], vertex[c]
-        slot[f >> 1], slot[g >> 1], slot[e >> 1] = 3 * m, 3 * m + 1, 3 * m + 2
-        m += 1
-    for e in range(0, 2 * edges, 2):
-        left, right = slot[e], slot[e + 1]
+        triangles[size], triangles[size + 1], triangles[size + 2] = a, b, c
+        slot[f >> 1], slot[g >> 1], slot[e >> 1] = size, size + 1, size + 2
+        size += 3
+    for half in range(0, len(slot), 2):
+        left, right = slot[half], slot[half + 1]
         if left >= 0:
-            neighbors[left // 3, left % 3] = right // 3  # -1 // 3 = -1: outside
+            neighbors[left] = right // 3  # -1 // 3 = OUTER // 3 = -1
         if right >= 0:
-            neighbors[right // 3, right % 3] = left // 3
-    return m
+            neighbors[right] = left // 3
+    return size // 3
 
 
-def triangles_of(
-    ring: EdgeArray, org: EdgeArray, edges: int, ghost: int, vertex: EdgeArray
-) -> tuple[IntArray, IntArray]:
-    """Return (triangles, neighbors), int32 (m, 3) each, of a triangulated sphere without the triangles at the ghost.
+def triangles_of(ring: EdgeArray, org: EdgeArray, slot: EdgeArray, ghost: int = NO_GHOST) -> tuple[IntArray, IntArray]:
+    """Return (triangles, neighbors), int32 (m, 3) each, of the triangular faces. O(edges).
 
-    ``vertex[v]`` is the number to be written for the vertex v. O(edges).
+    ``slot`` is scratch, one entry for each directed edge: -1, or OUTER if its left face does not belong to the result.
+    Faces at the ghost vertex do not, either.
     """
-    capacity = 2 * edges // 3
-    triangles = np.empty((capacity, 3), dtype=np.int32)
-    neighbors = np.empty((capacity, 3), dtype=np.int32)
-    slot = np.full(2 * edges, -1, dtype=np.int32)
-    m = _collect(ring, org, edges, ghost, vertex, triangles, neighbors, slot)
-    return triangles[:m].copy(), neighbors[:m].copy()
+    triangles = np.empty(len(slot), dtype=np.int32)
+    neighbors = np.empty(len(slot), dtype=np.int32)
+    m = _collect(ring, org, ghost, triangles, neighbors, slot)
+    triangles.resize(3 * m, refcheck=False)  # the room of the other faces goes back
+    neighbors.resize(3 * m, refcheck=False)
+    return triangles.reshape(m, 3), neighbors.reshape(m, 3)

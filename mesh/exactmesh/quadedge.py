@@ -20,11 +20,16 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar, overload
 
 import numpy as np
+import numpy.typing as npt
 
+from exactkernel.arrays import vertex_indices
 from exactkernel.jit import jit
+from exactkernel.types import IntArray
 from exactmesh import edgealgebra as algebra
+from exactmesh.connectivity import neighbors_of, rings_of
 from exactmesh.edgealgebra import EdgeArray
 from exactmesh.errors import TopologyError
+from exactmesh.extract import OUTER, triangles_of
 from exactmesh.ids import OUTSIDE, Face, QuarterEdge, Vertex
 
 __all__ = ["NO_VERTEX", "Dual", "Edge", "Primal", "QuadEdge"]
@@ -263,6 +268,35 @@ class QuadEdge:
         self._count = len(ring) // 4
         self.check()
         return self
+
+    @classmethod
+    def from_triangles(cls, triangles: npt.ArrayLike, neighbors: IntArray | None = None) -> "QuadEdge":
+        """Return the quad-edge of triangles that cover a region without pinches: its faces are their row numbers.
+
+        Args:
+            triangles: integers (m, 3), counterclockwise.
+            neighbors: as in :class:`Triangulation`, if they are known.
+
+        Raises:
+            TopologyError: a directed edge is in two triangles.
+            ShapeError: not an integer array of shape (m, 3).
+
+        O(m log m), O(m) with neighbors.
+
+        >>> from exactmesh import QuadEdge
+        >>> QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)]).counts()
+        (4, 5, 3)
+        """
+        corners = vertex_indices(triangles)
+        return cls.from_arrays(*rings_of(corners, neighbors_of(corners) if neighbors is None else neighbors))
+
+    def triangles(self) -> IntArray:
+        """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""
+        live = np.flatnonzero(self._ring[: 4 * self._count : 4] != _FREE)
+        slot = np.full(2 * self._count, OUTER, dtype=np.int32)
+        for half in (2 * live, 2 * live + 1):
+            slot[half[self._face[half ^ 1] != OUTSIDE]] = -1
+        return triangles_of(self._ring, self._vertex, slot)[0]
 
     def __len__(self) -> int:
         """Return the number of edges (each with its four quarter-edges)."""

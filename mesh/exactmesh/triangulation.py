@@ -10,7 +10,7 @@ import numpy.typing as npt
 from exactkernel.arrays import finite_points
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW, Context
 from exactkernel.types import FloatArray, IntArray, Stage
-from exactmesh.connectivity import edges_of, hull_of, quad_edge_of
+from exactmesh.connectivity import edges_of, hull_of
 from exactmesh.locate import locate_points
 from exactmesh.quadedge import QuadEdge
 from exactmesh.quality import Statistics, statistics_of
@@ -110,7 +110,7 @@ class Triangulation:
         >>> delaunay([(0, 0), (1, 0), (1, 1), (0, 1)]).quad_edge().counts()
         (4, 5, 3)
         """
-        return quad_edge_of(self.triangles, self.neighbors)
+        return QuadEdge.from_triangles(self.triangles, self.neighbors)
 
     def statistics(self) -> Statistics:
         """Return counts, angles, areas and lengths, in plain floating point. O(m)."""

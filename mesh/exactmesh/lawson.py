@@ -1,0 +1,180 @@
+"""Lawson's algorithm: flip edges that are not locally Delaunay, from any triangulation, until there are none.
+
+Each flip of ac to bd lowers the lifted surface, by exactly incircle(a, b, c, d) in a potential that is bounded below, so
+the algorithm ends; with the perturbed test it ends in one and the same triangulation from wherever it starts.
+Reference [Lawson 1977], [Edelsbrunner 2001].
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from exactkernel.arrays import finite_points, vertex_indices
+from exactkernel.context import Context, scaled_into_window
+from exactkernel.incircle import incircle_perturbed, incircle_perturbed_adaptive
+from exactkernel.jit import jit
+from exactkernel.orient2d import orient2d
+from exactkernel.rational import raise_if_interrupted
+from exactkernel.types import FloatArray, Sign
+from exactmesh.connectivity import neighbors_of, rings_of
+from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
+from exactmesh.errors import InadmissibleError, TopologyError
+from exactmesh.extract import OUTER, triangles_of
+from exactmesh.ids import OUTSIDE
+from exactmesh.quadedge import Edge, Primal
+from exactmesh.triangulation import Triangulation, work_of
+from exactmesh.verify import Property, verify
+
+__all__ = ["flip", "is_flippable", "is_locally_delaunay", "lawson"]
+
+_CHUNK = 1 << 20  # edges tested between two looks at Ctrl-C
+
+_TRIANGULATION = (
+    Property.FINITE,
+    Property.INDICES,
+    Property.DISTINCT_POINTS,
+    Property.ORIENTATION,
+    Property.ALL_POINTS_USED,
+    Property.ADMISSIBLE,
+    Property.COVERS_HULL,
+)
+
+
+def _corners(points: FloatArray, edge: Edge[Primal]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return a, b, c, d: the edge runs from a to c, b is the apex on its right, d on its left."""
+    a, c = edge.org, edge.dest
+    return points[a], points[edge.oprev.dest], points[c], points[edge.onext.dest]
+
+
+def is_locally_delaunay(points: FloatArray, edge: Edge[Primal]) -> bool:
+    """Tell whether the apex on one side of the edge is outside the (perturbed) circle of the other; on the hull, True.
+
+    Args:
+        points: (n, 2), the coordinates of the vertices.
+        edge: of a quad-edge whose faces besides OUTSIDE are counterclockwise triangles.
+
+    >>> from exactmesh import QuadEdge, flip, is_locally_delaunay
+    >>> points = [(0, 0), (4, 0), (5, 3), (0, 1)]
+    >>> surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+    >>> [(e.org, e.dest) for e in surface.edges() if not is_locally_delaunay(points, e)]
+    [(2, 0)]
+    """
+    if OUTSIDE in (edge.left, edge.right):
+        return True
+    return incircle_perturbed(*_corners(points, edge)) is not Sign.POSITIVE
+
+
+def is_flippable(points: FloatArray, edge: Edge[Primal]) -> bool:
+    """Tell whether the two triangles at the edge form a strictly convex quadrilateral."""
+    if OUTSIDE in (edge.left, edge.right):
+        return False
+    a, b, c, d = _corners(points, edge)
+    return orient2d(a, b, d) is Sign.POSITIVE and orient2d(b, c, d) is Sign.POSITIVE
+
+
+def flip(points: FloatArray, edge: Edge[Primal]) -> None:
+    """Replace the edge by the other diagonal of its two triangles, in place.
+
+    Raises:
+        TopologyError: the edge is on the hull, or its quadrilateral is not strictly convex.
+    """
+    if not is_flippable(points, edge):
+        raise TopologyError(f"the edge {edge.org} -> {edge.dest} cannot be flipped", indices=[edge.org, edge.dest])
+    edge.structure.swap(edge)
+
+
+@jit
+def flip_until_delaunay(
+    k: Context,
+    xy: FloatArray,
+    ring: EdgeArray,
+    org: EdgeArray,
+    hull: npt.NDArray[np.bool_],
+    stack: EdgeArray,
+    waiting: npt.NDArray[np.bool_],
+    height: int,
+    limit: int,
+) -> tuple[int, int]:
+    """Test up to limit edges from the stack and flip those that fail; return (height of the stack, flips).
+
+    ``waiting[i]`` tells whether edge i is on the stack, so that it is there once at most. ``hull[i]`` are left alone.
+    """
+    flips = 0
+    for _ in range(limit):
+        if height == 0:
+            break
+        height -= 1
+        i = stack[height]
+        waiting[i] = False
+        if hull[i]:
+            continue
+        e = 4 * i
+        cd = left_next(ring, e)
+        da = left_next(ring, cd)
+        ab = left_next(ring, e ^ 2)
+        bc = left_next(ring, ab)
+        a, b, c, d = origin(org, e), origin(org, bc), dest(org, e), origin(org, da)
+        if (
+            incircle_perturbed_adaptive(
+                k, xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[d, 0], xy[d, 1]
+            )
+            <= 0
+        ):
+            continue
+        swap(ring, org, e)
+        flips += 1
+        for side in (cd, da, ab, bc):
+            if not waiting[side >> 2]:
+                waiting[side >> 2] = True
+                stack[height] = side >> 2
+                height += 1
+    return height, flips
+
+
+def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
+    """Return THE Delaunay triangulation of the points, by flips from any triangulation of their hull.
+
+    Args:
+        points: (n, 2) finite coordinates, all distinct.
+        triangles: integers (m, 3), counterclockwise, a triangulation of the convex hull that uses every point.
+
+    Returns:
+        The same :class:`Triangulation` as :func:`exactmesh.delaunay` up to the order of the triangles, whatever the
+        start; ``work.flips`` is the number of flips.
+
+    Raises:
+        InadmissibleError: the triangles are no such triangulation; ``report`` is the verifier's, with witnesses.
+        NonFiniteError, CoordinateError, ShapeError: as for :func:`exactmesh.delaunay`.
+
+    At most n (n - 1) / 2 flips. Reference [Lawson 1977].
+
+    >>> from exactmesh import lawson
+    >>> mesh = lawson([(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)])
+    >>> mesh.work.flips, sorted(sorted(t) for t in mesh.triangles.tolist())
+    (1, [[0, 1, 3], [1, 2, 3]])
+    """
+    given = finite_points(points).copy()
+    corners = vertex_indices(triangles)
+    report = verify(given, corners, claims=_TRIANGULATION)
+    if not report.ok:
+        raise InadmissibleError(
+            f"the triangles are no triangulation of the points' hull: {report.violations[0].sentence}", report=report
+        )
+    ring, org, face = rings_of(corners, neighbors_of(corners))
+    xy, k = scaled_into_window(given)
+    edges = len(ring) // 4
+    hull = (face[0::2] == OUTSIDE) | (face[1::2] == OUTSIDE)
+    stack, waiting = np.arange(edges, dtype=np.int32), np.ones(edges, dtype=np.bool_)
+    height, flips = edges, 0
+    while height > 0:
+        height, more = flip_until_delaunay(k, xy, ring, org, hull, stack, waiting, height, _CHUNK)
+        flips += int(more)
+        raise_if_interrupted()
+    slot = np.where(face.reshape(-1, 2)[:, ::-1].reshape(-1) == OUTSIDE, OUTER, -1).astype(np.int32)
+    found, neighbors = triangles_of(ring, org, slot)
+    return Triangulation(
+        points=given,
+        triangles=found,
+        neighbors=neighbors,
+        representative=np.arange(len(given), dtype=np.int32),
+        work=work_of(k, flips),
+    )
