@@ -90,9 +90,10 @@ def _edges(mesh: Mesh, links: Links) -> Finding:
         corners = near[i].tolist()
         magnitude, severity = incircle_determinant(mesh.points, corners, int(d[i]))
         triangles = rows[i][:1] + rows[i + len(told)][:1]
+        near_name, far_name = triangle_name(mesh.points, corners), point_name(mesh.points, int(d[i]))
         message = (
-            f"vertex {point_name(mesh.points, int(d[i]))} of triangle {triangles[1]} lies inside the circle of "
-            f"triangle {triangles[0]} = {triangle_name(mesh.points, corners)}: incircle {approximately(magnitude)}"
+            f"vertex {far_name} of triangle {triangles[1]} lies inside the circumcircle of triangle "
+            f"{triangles[0]} = {near_name}: incircle {approximately(magnitude)}"
         )
         if severity is Severity.ROUNDING:
             message += ", rounding-sized"

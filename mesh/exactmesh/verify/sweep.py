@@ -69,7 +69,7 @@ def meet_improperly(k: Context, s: Segments, e: int, f: int) -> bool:
         return False
     from_c, from_d = turn(k, s.points, a, b, c), turn(k, s.points, a, b, d)
     if from_c == 0 and from_d == 0:
-        return c < b and a < d
+        return bool(c < b and a < d)
     if from_c * from_d > 0:
         return False
     return bool(turn(k, s.points, c, d, a) * turn(k, s.points, c, d, b) <= 0)

@@ -159,7 +159,7 @@ def _against_points(
     if not admissible or unused.size:
         first = first_at_position(mesh.points)
         distinct = check_distinct(mesh.points, first)
-        if not missing:
+        if not missing and len(mesh.triangles):
             used = np.flatnonzero(tiling.links.first[1:] > tiling.links.first[:-1])
             enclosed = enclosed_points(unused, used, first)
     return {
