@@ -70,8 +70,9 @@ def verify(
     failed = tuple(property_ for property_, finding in findings.items() if finding.verdict is Verdict.FAILS)
     counts = np.zeros((2, len(Stage)), dtype=np.int64)
     if not failed:
-        mesh = prepared_mesh(doubles, triples)
-        findings.update(check_mesh(mesh, chosen))
+        with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
+            mesh = prepared_mesh(doubles, triples)
+            findings.update(check_mesh(mesh, chosen))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
