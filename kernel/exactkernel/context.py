@@ -73,7 +73,7 @@ def scan(coordinates: FloatArray) -> tuple[float, float]:
             continue
         maximum = max(maximum, magnitude)
         steps = magnitude / unit
-        if magnitude < unit or steps != math.floor(steps):  # a quotient that overflows is a multiple all the same
+        if magnitude < unit or steps != np.floor(steps):  # a quotient that overflows is a multiple all the same
             unit = lowest_bit(x)
     return maximum, unit
 

@@ -1,0 +1,50 @@
+"""The verifier: exact answers about triangles from anywhere, with witnesses. It imports no algorithm.
+
+>>> from exactmesh.verify import verify
+>>> print(verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)], claims=["admissible"]))
+3 points, 1 triangles: every claim holds
+  + finite           holds (not claimed)
+  + indices          holds (not claimed)
+  + distinct_points  holds (not claimed)
+  + orientation      holds (not claimed)
+  + all_points_used  holds (not claimed)
+  + edge_manifold    holds (not claimed)
+  + vertex_manifold  holds (not claimed)
+  + admissible       holds
+  + covers_hull      holds (not claimed)
+  + delaunay         holds (not claimed)
+  + weakly_acute     holds (not claimed)
+  ! acute            fails, 1 found (not claimed)
+      triangle 0 = 0 (0.0, 0.0), 1 (1.0, 0.0), 2 (0.0, 1.0) has an angle of exactly 90 degrees at 0 (0.0, 0.0)
+  orient2d: filter 6, grid 1
+  incircle: not called
+"""
+
+from exactmesh.verify.properties import (
+    DELAUNAY_TRIANGULATION,
+    ChoiceError,
+    Kind,
+    Orientation,
+    Property,
+    Severity,
+    Verdict,
+)
+from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, VerificationError, Violation
+from exactmesh.verify.verifier import verify
+
+__all__ = [
+    "DELAUNAY_TRIANGULATION",
+    "FORMAT",
+    "WITNESSES",
+    "ChoiceError",
+    "Finding",
+    "Kind",
+    "Orientation",
+    "Property",
+    "Report",
+    "Severity",
+    "Verdict",
+    "VerificationError",
+    "Violation",
+    "verify",
+]

@@ -1,0 +1,115 @@
+"""ADMISSIBLE, decided exactly for every set of triangles, in linear time where the boundary is convex.
+
+Let T be triangles with area, counterclockwise, no directed edge twice, and B the directed edges without a
+reverse.
+
+1. For x on no edge, the number of triangles that contain x is the winding number of B around x: the
+   boundaries of the triangles sum to B, matched edges cancel.
+2. Theorem. T is admissible iff (i) two edges of B meet only in vertices (indices) that they share, and (ii)
+   every edge of B has winding number 1 on its left and 0 on its right. If T is admissible, two edges of B lie
+   in triangles that meet in a common corner or edge; that edge is matched, hence not in B, so the two meet in
+   one of its ends at most; and no point is covered twice. Conversely, every component of the complement of B
+   touches an edge of B, so by (ii) no x is covered twice. Suppose that p is common to two triangles s, t, but
+   not spanned by common corners. Their interiors are disjoint, so p is on the boundary of both. If p is
+   inside a matched edge of s, or at a corner of s round which the triangles close, then s and its neighbours
+   cover a neighbourhood of p; t has area near p, so t is one of them, and p is spanned by common corners
+   after all. So p lies on an edge of B on both sides, which (i) forbids.
+3. If B is one convex cycle, its interior has winding number 1 and the rest 0 (theorems A and C), hence (i)
+   and (ii).
+
+Two triangles on one side of an edge overlap, so a directed edge that occurs twice is a violation. (i) implies
+that no two vertices of B share a position; inner vertices cannot, by the neighbourhood argument: theorem B.
+"""
+
+import numpy as np
+from exactkernel.orient2d import orient2d
+
+from exactmesh.verify.boundary import Boundary
+from exactmesh.verify.links import Links
+from exactmesh.verify.manifold import repeated_edges
+from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.properties import Kind, Property, Verdict
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.sweep import IMPROPER, PROPER, swept
+from exactmesh.verify.triangles import Shapes
+from exactmesh.verify.witness import (
+    IndexArray,
+    finding_of,
+    point_name,
+    rows_of_triangles,
+    triangle_name,
+)
+
+__all__ = ["check_overlap", "check_sweep", "check_zero_area"]
+
+
+def check_zero_area(mesh: Mesh, shapes: Shapes) -> Finding:
+    """Find triangles without area."""
+
+    def describe(t: int) -> Violation:
+        corners = tuple(mesh.triangles[t].tolist())
+        message = f"triangle {t} = {triangle_name(mesh.points, corners)} has no area"
+        return Violation(Property.ADMISSIBLE, Kind.ZERO_AREA, (t,), corners, message)
+
+    return finding_of(np.flatnonzero(shapes.orientation == 0), describe)
+
+
+def check_overlap(mesh: Mesh, links: Links) -> Finding:
+    """Find triangles on the same side of an edge."""
+    return repeated_edges(mesh, links, Property.ADMISSIBLE, Kind.OVERLAP, "they overlap")
+
+
+def check_sweep(mesh: Mesh, boundary: Boundary) -> Finding:
+    """Decide (i) and (ii), for triangles without repeated edges. O(b log b); stops at the first fault."""
+    vertices = np.unique(boundary.origin)  # a closed chain: the targets are the same
+    x, y = mesh.coordinates[vertices].T
+    order = np.lexsort((y, x))
+    points, vertices = mesh.coordinates[vertices[order]], vertices[order]
+    same = (points[1:] == points[:-1]).all(axis=1)
+    if same.any():
+        return _coincident(mesh, np.stack([vertices[:-1][same], vertices[1:][same]], axis=1))
+    rank = np.empty(len(mesh.points), dtype=np.intp)
+    rank[vertices] = np.arange(len(vertices))
+    fault, e, f = swept(mesh.context, points, rank[boundary.origin], rank[boundary.target])
+    if fault == PROPER:
+        return Finding(Verdict.HOLDS)
+    edges = [tuple(int(ends[i]) for ends in boundary) for i in (e, f)]
+    rows = tuple(t for found in rows_of_triangles(mesh.triangles, edges, len(mesh.points)) for t in found)
+    (a, b, _), (c, d, _) = edges
+    if fault == IMPROPER:
+        kind, sentence = _improper(mesh, (a, b), (c, d))
+    else:
+        kind = Kind.OVERLAP
+        sentence = f"the left side of {_edge(mesh, c, d)} is covered twice, also from {_edge(mesh, a, b)}"
+    violation = Violation(Property.ADMISSIBLE, kind, rows, tuple(dict.fromkeys((a, b, c, d))), sentence)
+    return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
+
+
+def _edge(mesh: Mesh, a: int, b: int) -> str:
+    return f"the edge {point_name(mesh.points, a)} - {point_name(mesh.points, b)}"
+
+
+def _coincident(mesh: Mesh, pairs: IndexArray) -> Finding:
+    def describe(i: int) -> Violation:
+        v, w = pairs[i].tolist()
+        message = (
+            f"corners {point_name(mesh.points, v)} and {point_name(mesh.points, w)} are at the same position"
+        )
+        return Violation(Property.ADMISSIBLE, Kind.HANGING_NODE, (), (v, w), message)
+
+    finding = finding_of(np.arange(len(pairs)), describe)
+    return Finding(Verdict.FAILS, finding.count, finding.violations, lower_bound=True)
+
+
+def _improper(mesh: Mesh, e: tuple[int, int], f: tuple[int, int]) -> tuple[Kind, str]:
+    """Say how two edges meet where they should not."""
+    for (a, b), (c, d) in ((e, f), (f, e)):
+        for v in (c, d):
+            if v not in (a, b) and _lies_on(mesh, v, a, b):
+                return Kind.HANGING_NODE, f"vertex {point_name(mesh.points, v)} lies on {_edge(mesh, a, b)}"
+    return Kind.CROSSING, f"{_edge(mesh, *e)} crosses {_edge(mesh, *f)}"
+
+
+def _lies_on(mesh: Mesh, v: int, a: int, b: int) -> bool:
+    p, q, r = (tuple(mesh.points[i].tolist()) for i in (a, v, b))
+    return orient2d(p, r, q) == 0 and (p < q < r or r < q < p)

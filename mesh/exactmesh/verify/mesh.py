@@ -1,0 +1,106 @@
+"""What is checked: the input as it came, and the same in the form that the compiled checks read."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from exactkernel.arrays import exact_doubles
+from exactkernel.context import Context, scaled_into_window
+from exactkernel.errors import ShapeError
+from exactkernel.types import FloatArray, IntArray
+
+from exactmesh.verify.properties import Kind, Property, Verdict
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.witness import finding_of, point_name
+
+__all__ = ["Mesh", "check_finite", "check_indices", "index_triples", "prepared_mesh"]
+
+_MAX_POINTS = 2**31  # indices are packed in pairs into 62 bits
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Finite points and valid triangles.
+
+    Attributes:
+        points: float64 (n, 2) as given, for witnesses.
+        coordinates: the same, times a power of two where that brings them into the window of the predicates.
+        context: for predicates on ``coordinates``.
+        triangles: int32 (m, 3) as listed.
+    """
+
+    points: FloatArray
+    coordinates: FloatArray
+    context: Context
+    triangles: IntArray
+
+
+def prepared_mesh(points: FloatArray, triangles: npt.NDArray[np.integer[npt.NBitBase]]) -> Mesh:
+    """Return the mesh of finite points and valid indices."""
+    coordinates, context = scaled_into_window(points)
+    return Mesh(points, coordinates, context, np.ascontiguousarray(triangles, dtype=np.int32))
+
+
+def points_of(points: npt.ArrayLike) -> FloatArray:
+    """Return the points as exact doubles, NaN and infinity included.
+
+    Raises:
+        ShapeError: not of shape (n, 2), or too many for 31 bits.
+        CoordinateError: a coordinate is not exactly a double.
+    """
+    doubles = exact_doubles(points)
+    if len(doubles) > _MAX_POINTS:
+        raise ShapeError(f"{len(doubles)} points; at most 2^31 can be checked")
+    return doubles
+
+
+def index_triples(triangles: npt.ArrayLike) -> npt.NDArray[np.integer[npt.NBitBase]]:
+    """Return the triangles as an integer array (m, 3); an empty list is no triangles.
+
+    Raises:
+        ShapeError: another shape, or a dtype that is not integer.
+    """
+    try:
+        array = np.asarray(triangles)
+    except ValueError as error:  # ragged
+        raise ShapeError(f"triangles is not an array of shape (m, 3): {error}") from None
+    if array.shape in ((0,), (0, 3)):
+        return np.empty((0, 3), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(f"triangles has shape {array.shape}; expected (m, 3)")
+    if array.dtype.kind not in "iu":
+        raise ShapeError(f"triangles has dtype {array.dtype}; expected an integer type")
+    return array
+
+
+def check_finite(points: FloatArray) -> Finding:
+    """FINITE. O(n)."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        if np.isfinite(points.sum()):  # one pass; where the sum overflows, look closer
+            return Finding(Verdict.HOLDS)
+    return finding_of(
+        np.flatnonzero(~np.isfinite(points).all(axis=1)),
+        lambda v: Violation(
+            Property.FINITE, Kind.NOT_FINITE, (), (v,), f"point {point_name(points, v)} is not finite"
+        ),
+    )
+
+
+def check_indices(triangles: npt.NDArray[np.integer[npt.NBitBase]], n: int) -> Finding:
+    """INDICES. O(m)."""
+    a, b, c = triangles.T
+    repeated = (a == b) | (b == c) | (c == a)
+    outside = np.zeros(len(triangles), dtype=np.bool_)
+    if len(triangles) and (int(triangles.min()) < 0 or int(triangles.max()) >= n):
+        for corner in (a, b, c):
+            outside |= (corner < 0) | (corner >= n)
+
+    def describe(t: int) -> Violation:
+        corners = tuple(int(v) for v in triangles[t])
+        if outside[t]:
+            kind, sentence = Kind.OUT_OF_RANGE, f"has an index outside 0 .. {n - 1}"
+        else:
+            kind, sentence = Kind.REPEATED_CORNER, "repeats a corner"
+        return Violation(Property.INDICES, kind, (t,), corners, f"triangle {t} {corners} {sentence}")
+
+    return finding_of(np.flatnonzero(repeated | outside), describe)

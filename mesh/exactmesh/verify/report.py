@@ -1,0 +1,187 @@
+"""The answer of the verifier: a verdict for each property, with witnesses."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from exactkernel.errors import ExactMeshError
+from exactkernel.types import Sign, Stage
+
+from exactmesh.verify.properties import Kind, Property, Severity, Verdict
+
+__all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
+
+#: Violations that a finding spells out; ``Finding.count`` goes on counting.
+WITNESSES = 100
+#: The name and version of what :meth:`Report.to_json` writes.
+FORMAT = "exactmesh-report/1"
+
+_MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
+_SHOWN = 3  # violations of a property that str(report) prints
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """One witness against a property.
+
+    Attributes:
+        property: what is violated.
+        kind: in which way.
+        triangles: rows of ``triangles`` that are involved.
+        vertices: rows of ``points`` that are involved.
+        message: one sentence with indices and coordinates.
+        sign: the exact sign of the determinant that decided, where there is one.
+        magnitude: that determinant, an exact rational in units of the coordinates: twice the signed area
+            (orient2d), the incircle determinant, or the scalar product of diametral.
+        severity: ``ROUNDING`` where doubles do not resolve the magnitude.
+    """
+
+    property: Property
+    kind: Kind
+    triangles: tuple[int, ...]
+    vertices: tuple[int, ...]
+    message: str
+    sign: Sign | None = None
+    magnitude: Fraction | None = None
+    severity: Severity = Severity.WRONG
+
+    def to_dict(self) -> dict[str, object]:
+        """Return what JSON can say; the rational as "p/q"."""
+        return {
+            "kind": self.kind.value,
+            "severity": self.severity.value,
+            "triangles": list(self.triangles),
+            "vertices": list(self.vertices),
+            "sign": None if self.sign is None else int(self.sign),
+            "magnitude": None
+            if self.magnitude is None
+            else f"{self.magnitude.numerator}/{self.magnitude.denominator}",
+            "message": self.message,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What was found about one property.
+
+    Attributes:
+        verdict: HOLDS, FAILS or UNDECIDED.
+        count: the number of violations, also of those beyond the first :data:`WITNESSES`.
+        violations: the witnesses.
+        lower_bound: True where ``count`` is what was found before the search stopped (an overlap ends the
+            plane sweep).
+        because: for UNDECIDED, the properties that would have to hold first.
+    """
+
+    verdict: Verdict
+    count: int = 0
+    violations: tuple[Violation, ...] = ()
+    lower_bound: bool = False
+    because: tuple[Property, ...] = ()
+
+    def to_dict(self) -> dict[str, object]:
+        """Return what JSON can say."""
+        return {
+            "verdict": self.verdict.value,
+            "count": self.count,
+            "count_is_lower_bound": self.lower_bound,
+            "because": [property_.value for property_ in self.because],
+            "violations": [violation.to_dict() for violation in self.violations],
+        }
+
+
+class VerificationError(ExactMeshError):
+    """A claimed property does not hold, or could not be decided; ``report`` has the witnesses."""
+
+    def __init__(self, message: str, *, report: "Report") -> None:
+        super().__init__(message)
+        self.report = report
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The verdict on every property of a mesh.
+
+    Attributes:
+        findings: a :class:`Finding` for each :class:`Property`, claimed or not.
+        claims: the properties that were claimed.
+        point_count, triangle_count: the size of the input.
+        stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
+    """
+
+    findings: Mapping[Property, Finding]
+    claims: tuple[Property, ...]
+    point_count: int
+    triangle_count: int
+    stages: Mapping[str, Mapping[Stage, int]]
+
+    @property
+    def ok(self) -> bool:
+        """True if every claimed property holds."""
+        return all(self.verdict(claim) is Verdict.HOLDS for claim in self.claims)
+
+    @property
+    def violations(self) -> tuple[Violation, ...]:
+        """All witnesses, claimed properties or not, in the order of the properties."""
+        return tuple(violation for finding in self.findings.values() for violation in finding.violations)
+
+    def verdict(self, property_: Property) -> Verdict:
+        """Return the verdict on one property."""
+        return self.findings[property_].verdict
+
+    def raise_if_failed(self) -> None:
+        """Raise unless every claimed property holds.
+
+        Raises:
+            VerificationError: it carries this report.
+        """
+        if not self.ok:
+            broken = [claim for claim in self.claims if self.verdict(claim) is not Verdict.HOLDS]
+            summary = ", ".join(f"{claim} {self.verdict(claim)}" for claim in broken)
+            witnesses = [self.findings[claim].violations for claim in broken]
+            sentence = next((violations[0].message for violations in witnesses if violations), "no witness")
+            raise VerificationError(f"{summary}: {sentence}", report=self)
+
+    def to_json(self) -> str:
+        """Return the report as JSON, format "exactmesh-report/1": every verdict, witnesses, rationals as
+        "p/q"."""
+        document = {
+            "format": FORMAT,
+            "ok": self.ok,
+            "points": self.point_count,
+            "triangles": self.triangle_count,
+            "claims": [claim.value for claim in self.claims],
+            "stages": {
+                predicate: {stage.name.lower(): count for stage, count in counts.items()}
+                for predicate, counts in self.stages.items()
+            },
+            "properties": {
+                property_.value: finding.to_dict() for property_, finding in self.findings.items()
+            },
+        }
+        return json.dumps(document, indent=2, allow_nan=False)
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        outcome = "every claim holds" if self.ok else "NOT what it claims to be"
+        yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
+        for property_, finding in self.findings.items():
+            yield f"  {_MARKS[finding.verdict]} {property_:<16} {self._summary(property_, finding)}"
+            for violation in finding.violations[:_SHOWN]:
+                yield f"      {violation.message}"
+            if finding.count > _SHOWN:
+                yield f"      ... and {finding.count - _SHOWN} more"
+        for predicate, counts in self.stages.items():
+            told = ", ".join(f"{stage.name.lower()} {count}" for stage, count in counts.items() if count)
+            yield f"  {predicate}: {told or 'not called'}"
+
+    def _summary(self, property_: Property, finding: Finding) -> str:
+        text = finding.verdict.value
+        if finding.verdict is Verdict.FAILS:
+            text += f", {'at least ' if finding.lower_bound else ''}{finding.count} found"
+        if finding.because:
+            text += f": {' and '.join(finding.because)} would have to hold"
+        return text if property_ in self.claims else f"{text} (not claimed)"
