@@ -100,10 +100,9 @@ def vertex_indices(triangles: npt.ArrayLike, name: str = "triangles") -> IntArra
     if array.dtype.kind not in "iu":
         raise ShapeError(f"{name} has dtype {array.dtype}; expected integers")
     limits = np.iinfo(np.int32)
-    large = np.flatnonzero(((array < limits.min) | (array > limits.max)).any(axis=1)) if array.itemsize > 2 else ()
-    if len(large):
+    large = np.flatnonzero(((array < limits.min) | (array > limits.max)).any(axis=1))
+    if large.size:
         raise ShapeError(
-            f"{_culprits(np.asarray(large), name)}: {array[large[0]].tolist()} does not fit 32 bits",
-            indices=list(large),
+            f"{_culprits(large, name)}: {array[large[0]].tolist()} does not fit 32 bits", indices=large.tolist()
         )
     return np.ascontiguousarray(array, dtype=np.int32)

@@ -9,8 +9,10 @@
 from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
 from exactmesh.delaunay import delaunay
 from exactmesh.ids import OUTSIDE, Face, QuarterEdge, Vertex
+from exactmesh.lawson import flip, is_flippable, is_locally_delaunay, lawson
 from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
 from exactmesh.triangulation import Triangulation, Work
+from exactmesh.verify import Property, Report, Verdict, verify
 
 __all__ = [
     "OUTSIDE",
@@ -22,11 +24,19 @@ __all__ = [
     "Face",
     "NonFiniteError",
     "Primal",
+    "Property",
     "QuadEdge",
     "QuarterEdge",
+    "Report",
     "ShapeError",
     "Triangulation",
+    "Verdict",
     "Vertex",
     "Work",
     "delaunay",
+    "flip",
+    "is_flippable",
+    "is_locally_delaunay",
+    "lawson",
+    "verify",
 ]

@@ -157,7 +157,7 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
     report = verify(given, corners, claims=_TRIANGULATION)
     if not report.ok:
         raise InadmissibleError(
-            f"the triangles are no triangulation of the points' hull: {report.violations[0].sentence}", report=report
+            f"the triangles are no triangulation of the points' hull: {report.violations[0].message}", report=report
         )
     ring, org, face = rings_of(corners, neighbors_of(corners))
     xy, k = scaled_into_window(given)

@@ -22,8 +22,8 @@ that no two vertices of B share a position; inner vertices cannot, by the neighb
 """
 
 import numpy as np
-from exactkernel.orient2d import orient2d
 
+from exactkernel.orient2d import orient2d
 from exactmesh.verify.boundary import Boundary
 from exactmesh.verify.links import Links
 from exactmesh.verify.manifold import repeated_edges
@@ -92,9 +92,7 @@ def _edge(mesh: Mesh, a: int, b: int) -> str:
 def _coincident(mesh: Mesh, pairs: IndexArray) -> Finding:
     def describe(i: int) -> Violation:
         v, w = pairs[i].tolist()
-        message = (
-            f"corners {point_name(mesh.points, v)} and {point_name(mesh.points, w)} are at the same position"
-        )
+        message = f"corners {point_name(mesh.points, v)} and {point_name(mesh.points, w)} are at the same position"
         return Violation(Property.ADMISSIBLE, Kind.HANGING_NODE, (), (v, w), message)
 
     finding = finding_of(np.arange(len(pairs)), describe)

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.context import Context
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
-
 from exactmesh.verify.links import BOUNDARY, Links, ends_of, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.witness import IndexArray
@@ -44,9 +44,7 @@ def lexicographically_before(points: FloatArray, v: int, w: int) -> bool:
 
 
 @jit
-def walk_convex(
-    k: Context, points: FloatArray, origin: IndexArray, successor: IndexArray, cycle: IndexArray
-) -> bool:
+def walk_convex(k: Context, points: FloatArray, origin: IndexArray, successor: IndexArray, cycle: IndexArray) -> bool:
     """Follow the chain from slot 0, write its vertices, and tell whether the conditions of theorem C hold."""
     i, steps, reversals = 0, 0, 0
     while True:
@@ -54,9 +52,7 @@ def walk_convex(
         u, v, w = origin[i], origin[j], origin[successor[j]]
         forward = lexicographically_before(points, u, v)
         reverses = forward != lexicographically_before(points, v, w)
-        turn = orient2d_adaptive(
-            k, points[u, 0], points[u, 1], points[v, 0], points[v, 1], points[w, 0], points[w, 1]
-        )
+        turn = orient2d_adaptive(k, points[u, 0], points[u, 1], points[v, 0], points[v, 1], points[w, 0], points[w, 1])
         if turn < 0 or (turn == 0 and reverses):
             return False
         if reverses:
@@ -96,9 +92,7 @@ def side_of_chain(k: Context, points: FloatArray, chain: IndexArray, v: int) -> 
         else:
             low = middle
     a, b = chain[low], chain[high]
-    return orient2d_adaptive(
-        k, points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[v, 0], points[v, 1]
-    )
+    return orient2d_adaptive(k, points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[v, 0], points[v, 1])
 
 
 @jit

@@ -67,9 +67,7 @@ def _without_circle(mesh: Mesh, t: int) -> Violation:
 
 
 def _enclosed(mesh: Mesh, v: int) -> Violation:
-    message = (
-        f"unused point {point_name(mesh.points, v)} lies inside the circumcircle of a triangle around it"
-    )
+    message = f"unused point {point_name(mesh.points, v)} lies inside the circumcircle of a triangle around it"
     return Violation(Property.DELAUNAY, Kind.POINT_IN_CIRCLE, (), (v,), message)
 
 

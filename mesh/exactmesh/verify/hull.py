@@ -1,9 +1,9 @@
 """COVERS_HULL, DISTINCT_POINTS, ALL_POINTS_USED: the points against the triangles."""
 
 import numpy as np
+
 from exactkernel.batch import orient2d_batch
 from exactkernel.types import FloatArray
-
 from exactmesh.verify.boundary import Boundary, outside_of
 from exactmesh.verify.links import Links
 from exactmesh.verify.mesh import Mesh
@@ -107,9 +107,7 @@ def _not_convex(mesh: Mesh, boundary: Boundary) -> Finding:
     if not reflex.size:
         corners = (int(origin[0]), int(target[0]), int(apex[0]))
         rows = rows_of_triangles(mesh.triangles, [corners], len(mesh.points))[0]
-        message = (
-            f"the union is in several parts; one begins at triangle {rows[0]}, {_pair(mesh, *corners[:2])}"
-        )
+        message = f"the union is in several parts; one begins at triangle {rows[0]}, {_pair(mesh, *corners[:2])}"
         violation = Violation(Property.COVERS_HULL, Kind.DISCONNECTED, rows, corners[:2], message)
         return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
 

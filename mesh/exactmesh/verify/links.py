@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.context import Context
 from exactkernel.incircle import incircle_adaptive
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-
 from exactmesh.verify.witness import IndexArray
 
 __all__ = [

@@ -2,8 +2,8 @@
 
 import numpy as np
 import numpy.typing as npt
-from exactkernel.jit import jit
 
+from exactkernel.jit import jit
 from exactmesh.verify.links import _LOW, BOUNDARY, CROWDED, REPEATED, Links, ends_of, slot_of, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Verdict
@@ -24,9 +24,7 @@ def repeated_edges(mesh: Mesh, links: Links, property_: Property, kind: Kind, fa
     told = edges[:WITNESSES].tolist()
     triples = [[(v, b, c) for c in _third_corners(links, v, b)] for v, b in told]
     rows = iter(
-        rows_of_triangles(
-            mesh.triangles, [corners for group in triples for corners in group], len(mesh.points)
-        )
+        rows_of_triangles(mesh.triangles, [corners for group in triples for corners in group], len(mesh.points))
     )
     violations = []
     for (v, b), group in zip(told, triples, strict=True):
@@ -46,9 +44,7 @@ def _third_corners(links: Links, v: int, b: int) -> list[int]:
 
 def check_edges(mesh: Mesh, links: Links) -> Finding:
     """EDGE_MANIFOLD."""
-    return repeated_edges(
-        mesh, links, Property.EDGE_MANIFOLD, Kind.REPEATED_EDGE, "they list it in the same direction"
-    )
+    return repeated_edges(mesh, links, Property.EDGE_MANIFOLD, Kind.REPEATED_EDGE, "they list it in the same direction")
 
 
 @jit

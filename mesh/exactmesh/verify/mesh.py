@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.arrays import exact_doubles
 from exactkernel.context import Context, scaled_into_window
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
-
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.witness import finding_of, point_name
@@ -80,9 +80,7 @@ def check_finite(points: FloatArray) -> Finding:
             return Finding(Verdict.HOLDS)
     return finding_of(
         np.flatnonzero(~np.isfinite(points).all(axis=1)),
-        lambda v: Violation(
-            Property.FINITE, Kind.NOT_FINITE, (), (v,), f"point {point_name(points, v)} is not finite"
-        ),
+        lambda v: Violation(Property.FINITE, Kind.NOT_FINITE, (), (v,), f"point {point_name(points, v)} is not finite"),
     )
 
 

@@ -7,7 +7,6 @@ from fractions import Fraction
 
 from exactkernel.errors import ExactMeshError
 from exactkernel.types import Sign, Stage
-
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
 
 __all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
@@ -54,9 +53,7 @@ class Violation:
             "triangles": list(self.triangles),
             "vertices": list(self.vertices),
             "sign": None if self.sign is None else int(self.sign),
-            "magnitude": None
-            if self.magnitude is None
-            else f"{self.magnitude.numerator}/{self.magnitude.denominator}",
+            "magnitude": None if self.magnitude is None else f"{self.magnitude.numerator}/{self.magnitude.denominator}",
             "message": self.message,
         }
 
@@ -156,9 +153,7 @@ class Report:
                 predicate: {stage.name.lower(): count for stage, count in counts.items()}
                 for predicate, counts in self.stages.items()
             },
-            "properties": {
-                property_.value: finding.to_dict() for property_, finding in self.findings.items()
-            },
+            "properties": {property_.value: finding.to_dict() for property_, finding in self.findings.items()},
         }
         return json.dumps(document, indent=2, allow_nan=False)
 

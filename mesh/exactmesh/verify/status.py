@@ -8,6 +8,7 @@ operation. Reference [Aragon 1989].
 from typing import NamedTuple
 
 import numpy as np
+
 from exactkernel.jit import jit
 from exactkernel.types import IntArray
 
@@ -89,9 +90,7 @@ def insert(status: Status, e: int, below: int, above: int) -> None:
         status.above[below] = e
     if above != NIL:
         status.below[above] = e
-    if (
-        below != NIL and status.child[below, 1] == NIL
-    ):  # of two neighbours one lies below the other in the tree
+    if below != NIL and status.child[below, 1] == NIL:  # of two neighbours one lies below the other in the tree
         status.child[below, 1] = e
         status.parent[e] = below
     elif above != NIL:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.context import Context
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, SignArray
-
 from exactmesh.verify.status import NIL, Status, empty_status, insert, remove
 from exactmesh.verify.witness import IndexArray
 
@@ -53,9 +53,7 @@ class Segments(NamedTuple):
 @jit
 def turn(k: Context, points: FloatArray, a: int, b: int, c: int) -> int:
     """Return orient2d of three ranked vertices."""
-    return orient2d_adaptive(
-        k, points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]
-    )
+    return orient2d_adaptive(k, points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1])
 
 
 @jit

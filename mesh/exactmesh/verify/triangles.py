@@ -3,13 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
+
 from exactkernel.context import Context
 from exactkernel.diametral import diametral_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, Sign, SignArray
-
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Orientation, Property
 from exactmesh.verify.report import Finding, Violation
@@ -41,9 +41,7 @@ class Shapes(NamedTuple):
 
 
 @jit
-def classify(
-    k: Context, points: FloatArray, triangles: IntArray, orientation: SignArray, widest: SignArray
-) -> None:
+def classify(k: Context, points: FloatArray, triangles: IntArray, orientation: SignArray, widest: SignArray) -> None:
     """Fill in the signs. At most one angle of a triangle is 90 degrees or more, so the largest sign is the
     widest's."""
     for t in range(len(triangles)):
@@ -117,9 +115,7 @@ def check_angles(mesh: Mesh, shapes: Shapes, property_: Property) -> Finding:
         name = f"triangle {t} = {triangle_name(mesh.points, (a, b, c))}"
         if shapes.orientation[t] == 0:
             return Violation(property_, Kind.ZERO_AREA, (t,), (a, b, c), f"{name} has no area", Sign.ZERO)
-        magnitude, p = max(
-            (scalar_product(mesh.points, *turn), turn[2]) for turn in ((b, c, a), (c, a, b), (a, b, c))
-        )
+        magnitude, p = max((scalar_product(mesh.points, *turn), turn[2]) for turn in ((b, c, a), (c, a, b), (a, b, c)))
         kind, size = (Kind.OBTUSE_ANGLE, "more than") if magnitude else (Kind.RIGHT_ANGLE, "exactly")
         message = f"{name} has an angle of {size} 90 degrees at {point_name(mesh.points, p)}"
         return Violation(property_, kind, (t,), (a, b, c), message, sign_of(magnitude), magnitude)

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW
 from exactkernel.types import IntArray, Stage
-
 from exactmesh.verify.admissible import check_overlap, check_sweep, check_zero_area
 from exactmesh.verify.boundary import Boundary, boundary_of, convex_cycle
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
@@ -143,9 +143,7 @@ def _fans(mesh: Mesh, links: Links, tiling: Tiling) -> Finding:
     return fans_finding(mesh, np.unique(boundary.origin[1:][boundary.origin[1:] == boundary.origin[:-1]]))
 
 
-def _against_points(
-    mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArray
-) -> dict[Property, Finding]:
+def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArray) -> dict[Property, Finding]:
     """DISTINCT_POINTS, COVERS_HULL, DELAUNAY: what depends on points that no triangle uses.
 
     Admissible triangles have their corners at distinct positions (theorem B): without unused points nothing

@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.constants import INCIRCLE_BOUND
 from exactkernel.types import FloatArray, IntArray, Sign
-
 from exactmesh.verify.properties import Severity, Verdict
 from exactmesh.verify.report import WITNESSES, Finding, Violation
 
@@ -81,9 +81,7 @@ def triangle_name(points: FloatArray, corners: Iterable[int]) -> str:
     return ", ".join(point_name(points, int(v)) for v in corners)
 
 
-def rows_of_triangles(
-    triangles: IntArray, wanted: Sequence[tuple[int, ...]], n: int
-) -> list[tuple[int, ...]]:
+def rows_of_triangles(triangles: IntArray, wanted: Sequence[tuple[int, ...]], n: int) -> list[tuple[int, ...]]:
     """Return for each triple of corners the rows of the triangles that have them, in any order. O(m)."""
     near = np.zeros(n, dtype=np.bool_)
     near[[v for corners in wanted for v in corners]] = True
