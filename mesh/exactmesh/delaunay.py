@@ -15,7 +15,7 @@ import numpy.typing as npt
 from exactkernel.arrays import finite_points
 from exactkernel.context import Context, scaled_into_window
 from exactkernel.incircle import incircle_perturbed_adaptive
-from exactkernel.jit import jit
+from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
@@ -36,10 +36,13 @@ MAX_POINTS = 2**31 // 12
 _CHUNK = 1 << 17  # points between two looks at Ctrl-C and the progress bar
 
 
-@jit
+# Coordinates are flat, xy[2 v] and xy[2 v + 1]: an index into two dimensions costs a multiplication more each time.
+
+
+@jit_inline
 def orient(k: Context, xy: FloatArray, a: int, b: int, c: int) -> int:
     """Return orient2d of three vertices, none of them the ghost."""
-    return orient2d_adaptive(k, xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1])
+    return orient2d_adaptive(k, xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], xy[2 * c], xy[2 * c + 1])
 
 
 @jit
@@ -51,10 +54,9 @@ def in_conflict(k: Context, xy: FloatArray, ghost: int, a: int, b: int, c: int, 
         return orient(k, xy, c, a, p) > 0
     if c == ghost:
         return orient(k, xy, a, b, p) > 0
-    return (
-        incircle_perturbed_adaptive(k, xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[p, 0], xy[p, 1])
-        > 0
-    )
+    ax, ay, bx, by = xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1]
+    cx, cy, px, py = xy[2 * c], xy[2 * c + 1], xy[2 * p], xy[2 * p + 1]
+    return incircle_perturbed_adaptive(k, ax, ay, bx, by, cx, cy, px, py) > 0
 
 
 @jit
@@ -121,9 +123,9 @@ def first_triangle(k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArra
 
     Returns the number of edges: 6, or 0 if all points lie on one line.
     """
-    n = len(xy)
+    n = len(xy) // 2
     b = 1
-    while b < n and xy[b, 0] == xy[0, 0] and xy[b, 1] == xy[0, 1]:
+    while b < n and xy[2 * b] == xy[0] and xy[2 * b + 1] == xy[1]:
         b += 1
     c = b + 1
     turn = 0
@@ -137,7 +139,8 @@ def first_triangle(k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArra
     for position, chosen in ((1, b), (2, c)):
         order[position], order[chosen] = order[chosen], order[position]
         for axis in range(2):
-            xy[position, axis], xy[chosen, axis] = xy[chosen, axis], xy[position, axis]
+            i, j = 2 * position + axis, 2 * chosen + axis
+            xy[i], xy[j] = xy[j], xy[i]
     second, third = (1, 2) if turn > 0 else (2, 1)
     org[0] = org[5] = 0
     org[2] = org[1] = second
@@ -167,7 +170,7 @@ def insert_range(
 
     ``twin[p]`` becomes the vertex in whose place p lies, or stays p.
     """
-    ghost = len(xy)
+    ghost = len(xy) // 2
     flips = 0
     if edges == 0:
         edges = first_triangle(k, xy, order, ring, org)
@@ -201,8 +204,8 @@ def _refuse_flat(points: FloatArray) -> None:
 def _insert_all(
     xy: FloatArray, k: Context, order: IndexArray, progress: Progress | None
 ) -> tuple[EdgeArray, EdgeArray, EdgeArray, int, int]:
-    """Build the quad-edge of xy (in order of insertion); return (ring, org, twin, edges, flips)."""
-    n = len(xy)
+    """Build the quad-edge of xy (flat, in order of insertion); return (ring, org, twin, edges, flips)."""
+    n = len(xy) // 2
     ring = np.empty(12 * n, dtype=np.int32)  # n vertices and the ghost have 3 (n + 1) - 6 edges
     org = np.empty(6 * n, dtype=np.int32)
     twin = np.arange(n, dtype=np.int32)
@@ -276,12 +279,12 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
         raise TooManyPointsError(f"{len(given)} points; at most {MAX_POINTS} fit 32-bit edge numbers")
     scaled, k = scaled_into_window(given)
     order = insertion_order(scaled, seed)
-    xy = scaled.take(order, axis=0)
+    xy = scaled.take(order, axis=0).reshape(-1)
     ring, org, twin, edges, flips = _insert_all(xy, k, order, progress)
     if edges == 0:
         _refuse_flat(given)
     kept, vertex, representative = _number_vertices(order, twin)
-    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), ghost=len(xy))
+    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), ghost=len(order))
     return Triangulation(
         points=given[kept],
         triangles=vertex.take(triangles),

@@ -19,9 +19,9 @@ def _collect(
 ) -> int:
     """Write the triangles and their neighbors, flat; return how many there are.
 
-    ``slot[e >> 1]`` becomes 3 t + i for the edge e opposite to corner i of triangle t.
+    ``slot[e >> 1]`` becomes 4 t + i for the edge e opposite to corner i of triangle t.
     """
-    size = 0
+    m = 0
     for half in range(len(slot)):
         if slot[half] != -1:
             continue
@@ -31,16 +31,16 @@ def _collect(
         a, b, c = origin(org, e), origin(org, f), origin(org, g)
         if a == ghost or b == ghost or c == ghost or left_next(ring, g) != e:
             continue
-        triangles[size], triangles[size + 1], triangles[size + 2] = a, b, c
-        slot[f >> 1], slot[g >> 1], slot[e >> 1] = size, size + 1, size + 2
-        size += 3
+        triangles[3 * m], triangles[3 * m + 1], triangles[3 * m + 2] = a, b, c
+        slot[f >> 1], slot[g >> 1], slot[e >> 1] = 4 * m, 4 * m + 1, 4 * m + 2
+        m += 1
     for half in range(0, len(slot), 2):
         left, right = slot[half], slot[half + 1]
         if left >= 0:
-            neighbors[left] = right // 3  # -1 // 3 = OUTER // 3 = -1
+            neighbors[3 * (left >> 2) + (left & 3)] = right >> 2  # -1 >> 2 = OUTER >> 2 = -1
         if right >= 0:
-            neighbors[right] = left // 3
-    return size // 3
+            neighbors[3 * (right >> 2) + (right & 3)] = left >> 2
+    return m
 
 
 def triangles_of(ring: EdgeArray, org: EdgeArray, slot: EdgeArray, ghost: int = NO_GHOST) -> tuple[IntArray, IntArray]:
