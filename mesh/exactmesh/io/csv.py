@@ -57,9 +57,7 @@ def _type_of(name: str) -> type | None:
     return int if name == "marker" else None
 
 
-def _columns(
-    file: TextFile, start: int, separator: str | None, names: list[str]
-) -> dict[str, npt.NDArray[np.generic]]:
+def _columns(file: TextFile, start: int, separator: str | None, names: list[str]) -> dict[str, npt.NDArray[np.generic]]:
     kept = {k: (name, kind) for k, name in enumerate(names) if (kind := _type_of(name)) is not None}
     if len({name for name, _ in kept.values()}) != len(kept):
         raise file.fault("two columns of the same name", line=start)
@@ -89,9 +87,7 @@ def _fields(text: str, separator: str | None) -> list[str]:
 def _records(file: TextFile, start: int, separator: str | None) -> Iterator[tuple[int, list[str]]]:
     """Yield (line number, fields) of the rows, one Python step a row: quotes and text are allowed."""
     if separator is None:
-        yield from (
-            (k + 1, file.lines[k].split()) for k in range(start, len(file.lines)) if file.lines[k].strip()
-        )
+        yield from ((k + 1, file.lines[k].split()) for k in range(start, len(file.lines)) if file.lines[k].strip())
         return
     reader = csv.reader(file.lines[start:], delimiter=separator, skipinitialspace=True)
     try:

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from exactkernel.types import FloatArray, IntArray
 
+from exactkernel.types import FloatArray, IntArray
 from exactmesh.io.model import Mesh
 from exactmesh.io.text import TextFile, rows_of_text
 

@@ -86,9 +86,7 @@ def read_points(path: PathLike) -> Mesh:
     name, stem, suffix = _parts(path)
     if suffix not in _OF_TRIANGLE:
         mesh = _read_single(name, suffix)
-        return replace(
-            mesh, triangles=None, neighbors=None, edges=None, triangle_attributes=None, edge_markers=None
-        )
+        return replace(mesh, triangles=None, neighbors=None, edges=None, triangle_attributes=None, edge_markers=None)
     if suffix != ".node" and not os.path.exists(name):
         raise FileFormatError("no such file", path=name)
     return read_node(stem + ".node")
@@ -127,9 +125,7 @@ def _parts(path: PathLike) -> tuple[str, str, str]:
     name = os.fspath(path)
     stem, suffix = os.path.splitext(name)
     if suffix not in _SUFFIXES:
-        raise FileFormatError(
-            f"has the unknown suffix {suffix!r}; known are {', '.join(_SUFFIXES)}", path=name
-        )
+        raise FileFormatError(f"has the unknown suffix {suffix!r}; known are {', '.join(_SUFFIXES)}", path=name)
     return name, stem, suffix
 
 

@@ -5,10 +5,10 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
+
 from exactkernel.arrays import finite_points
 from exactkernel.errors import CoordinateError, NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
-
 from exactmesh.errors import TopologyError
 
 __all__ = ["MarkerArray", "Mesh", "Triangulated", "mesh_of"]
@@ -100,9 +100,7 @@ class Mesh:
             "triangles": corners,
             "neighbors": _rows(_indices(neighbors, "neighbors", 3, -1, m or 0), "neighbors", m),
             "edges": sides,
-            "point_attributes": _rows(
-                _attributes(point_attributes, "point_attributes"), "point_attributes", n
-            ),
+            "point_attributes": _rows(_attributes(point_attributes, "point_attributes"), "point_attributes", n),
             "point_markers": _rows(_markers(point_markers, "point_markers"), "point_markers", n),
             "triangle_attributes": _rows(
                 _attributes(triangle_attributes, "triangle_attributes"), "triangle_attributes", m
@@ -187,9 +185,7 @@ def _attributes(values: npt.ArrayLike | None, name: str) -> FloatArray | None:
         raise CoordinateError(f"{name}[{rounded[0]}] would be rounded to doubles", indices=rounded.tolist())
     bad = np.flatnonzero(~np.isfinite(doubles).all(axis=1))
     if bad.size:
-        raise NonFiniteError(
-            f"{name}[{bad[0]}] is not finite: {doubles[bad[0]].tolist()}", indices=bad.tolist()
-        )
+        raise NonFiniteError(f"{name}[{bad[0]}] is not finite: {doubles[bad[0]].tolist()}", indices=bad.tolist())
     return doubles if array.size else None
 
 

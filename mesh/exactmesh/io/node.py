@@ -23,9 +23,7 @@ def read_node(path: str) -> Mesh:
     names = ("number of points", "dimension", "number of attributes", "number of markers")
     count, dimension, attributes, markers = file.header(names, (0, 2, 0, 0))
     if dimension != 2:
-        raise file.fault(
-            f"dimension {dimension}; only points of the plane (2) can be read", line=file.line_of(-1)
-        )
+        raise file.fault(f"dimension {dimension}; only points of the plane (2) can be read", line=file.line_of(-1))
     if markers > 1:
         raise file.fault(f"{markers} markers a point; there can be 0 or 1", line=file.line_of(-1))
     rows = file.table(file.row_type(count, "point", reals=2, attributes=attributes, markers=markers), count)

@@ -62,9 +62,7 @@ def _decoded(path: str) -> str:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise FileFormatError(
-            f"is not UTF-8 text: byte 0x{data[error.start]:02x}", path=path, line=line
-        ) from None
+        raise FileFormatError(f"is not UTF-8 text: byte 0x{data[error.start]:02x}", path=path, line=line) from None
 
 
 def _shown(field: str) -> str:
@@ -212,9 +210,7 @@ class TextFile:
             if len(rows) > count + 1:
                 raise self.fault(f"row {count + 1}, where the header announces {count}", line=last)
         if len(rows) <= count:
-            raise self.fault(
-                f"the header announces {count} rows, the file ends after {len(rows) - 1}", line=last
-            )
+            raise self.fault(f"the header announces {count} rows, the file ends after {len(rows) - 1}", line=last)
         table = np.zeros(count, dtype=dtype)
         flat = [("", "f8" if field is float else "i8") for field in fields]
         table.view(np.dtype(flat))[:] = rows[1:]
@@ -261,9 +257,7 @@ def fast_table(lines: Iterable[str], dtype: np.dtype[np.void], delimiter: str | 
     """Parse with numpy; None where it stumbles or meets NaN or infinity, for the slow path to explain."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "error"
-            )  # numpy warns where it reads an integer out of a float, or finds no row
+            warnings.simplefilter("error")  # numpy warns where it reads an integer out of a float, or finds no row
             table = np.loadtxt(lines, dtype=dtype, comments=None, delimiter=delimiter, ndmin=1)
     except (ValueError, Warning):
         return None
