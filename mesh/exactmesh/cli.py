@@ -29,7 +29,7 @@ _INTERRUPTED = 130
 _DUPLICATES_NAMED = 3
 
 #: click's base of wrong options, missing arguments and so on; typer may carry its own copy of click.
-_UsageError = typer.BadParameter.__mro__[1]
+_UsageError: type[typer.BadParameter] = typer.BadParameter.__mro__[1]
 
 app = typer.Typer(
     add_completion=False,
@@ -49,7 +49,7 @@ def _print_version(wanted: bool) -> None:
 @app.callback(invoke_without_command=True)
 def _common(
     context: typer.Context,
-    version: Annotated[
+    _version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
@@ -223,7 +223,7 @@ def info(mesh: _Mesh) -> None:
 def _facts(mesh: "Mesh") -> Iterator[tuple[str, str]]:
     import numpy as np
 
-    from exactmesh.quality import quality
+    from exactmesh.quality import statistics_of
 
     points, triangles = mesh.points, mesh.triangles
     yield "points", f"{len(points):,}, counted from {mesh.base}"
@@ -240,12 +240,15 @@ def _facts(mesh: "Mesh") -> Iterator[tuple[str, str]]:
     yield "triangles", f"{len(triangles):,}"
     sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
     edges, uses = np.unique(sides[:, 0] << 32 | sides[:, 1], return_counts=True)
-    yield "edges", f"{len(edges):,}, {np.count_nonzero(uses == 1):,} of them on the boundary"
+    boundary = int(np.count_nonzero(uses == 1))
+    yield "edges", f"{len(edges):,}, {boundary:,} of them on the boundary"
     if mesh.triangle_attributes is not None:
         yield "attributes of a triangle", str(mesh.triangle_attributes.shape[1])
-    measured = quality(points, triangles)
-    yield "angles", f"{measured.smallest_angle:.6g} to {measured.largest_angle:.6g} degrees"
-    yield "areas", f"{measured.smallest_area:.6g} to {measured.largest_area:.6g}, together {measured.total_area:.6g}"
+    if len(triangles):
+        figures = statistics_of(points, triangles, len(edges), boundary)
+        yield "angles", f"{figures.smallest_angle:.6g} to {figures.largest_angle:.6g} degrees"
+        yield "areas", f"{figures.smallest_area:.6g} to {figures.largest_area:.6g}, together {figures.area:.6g}"
+        yield "edge lengths", f"{figures.shortest_edge:.6g} to {figures.longest_edge:.6g}"
 
 
 @app.command()

@@ -119,7 +119,7 @@ def _verdict(report: "Report", claim: Property) -> Text:
     verdict = report.verdict(claim)
     if claim in report.claims:
         return Text(str(verdict), style=_STYLES[verdict])
-    return Text("yes" if verdict is Verdict.HOLDS else "no (not claimed)", style="dim")
+    return Text(f"{verdict}, not claimed", style="dim")
 
 
 def _stages(report: "Report", predicate: str) -> str:

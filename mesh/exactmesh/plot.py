@@ -11,7 +11,7 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.errors import ExactMeshError, FileFormatError
 from exactmesh.io.atomic import write_whole
 from exactmesh.io.model import Mesh
-from exactmesh.quality import triangle_angles
+from exactmesh.quality import angles_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,13 +80,14 @@ def _figure(points: FloatArray, triangles: IntArray, title: str | None) -> "Figu
         raise PlotUnavailableError(
             "pictures need matplotlib, which is not installed: pip install 'exactmesh[plot]'"
         ) from None
-    drawn = _in_unit_box(points)
+    unit = np.ldexp(points, -int(np.frexp(np.abs(points).max())[1]))  # no difference overflows
+    drawn = _in_unit_box(unit)
     width, height = np.maximum(np.ptp(drawn, axis=0), _SLIMMEST)
     figure = Figure(figsize=(_INCHES * width, _INCHES * height))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_aspect("equal")
     axes.set_axis_off()
-    angles = triangle_angles(points, triangles)
+    angles = angles_of(unit, triangles)
     _draw_triangles(axes, drawn, triangles, angles.min(axis=1, initial=60.0))
     if len(points) <= _POINTS_DRAWN:
         size = np.clip(2500.0 / len(points), 0.8, 22.0)
@@ -97,10 +98,8 @@ def _figure(points: FloatArray, triangles: IntArray, title: str | None) -> "Figu
 
 
 def _in_unit_box(points: FloatArray) -> FloatArray:
-    """Return the points moved and scaled so that the longer side of their box is 1; nothing overflows."""
-    exponent = int(np.frexp(np.abs(points).max())[1])
-    near = np.ldexp(points, -exponent)
-    near -= near.min(axis=0)
+    """Return the points moved and scaled so that the longer side of their box is 1."""
+    near: FloatArray = points - points.min(axis=0)
     extent = near.max()
     return near / extent if extent > 0.0 else near
 

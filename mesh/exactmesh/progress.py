@@ -10,9 +10,13 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 __all__ = ["COMPILING", "working"]
 
 #: What the first run on a machine says.
-COMPILING = "compiling, once on this machine (some ten seconds)"
+COMPILING = "compiling, once on this machine; a quarter of a minute"
 
 _PATIENCE = 1.0  # seconds; shorter work shows nothing
+
+
+def _ignore(_done: int, _total: int) -> None:
+    """There is nobody to tell."""
 
 
 @contextmanager
@@ -24,7 +28,7 @@ def working(task: str, *, compiling: bool = False) -> Iterator[Callable[[int, in
     """
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield lambda done, total: None
+        yield _ignore
         return
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     shown = Progress(*columns, console=console, transient=True)
