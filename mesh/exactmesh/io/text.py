@@ -23,6 +23,7 @@ _NUMBER_LIKE = re.compile(r"[0-9.+-]")
 _INTEGER = re.compile(r"[+-]?[0-9]{1,18}")
 _DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SHOWN = 40  # characters of a bad field that a message repeats
+_FLOAT = "%r"  # the shortest decimal that reads back as the same double
 _ROWS_AT_ONCE = 1 << 15  # rows that are formatted in one go
 
 
@@ -275,7 +276,7 @@ def rows_of_text(columns: Iterable[npt.NDArray[np.generic]], separator: str = " 
     '1 0.1 -0.0\\n2 1e+300 5e-324\\n'
     """
     flat = [column for block in columns for column in (block.T if block.ndim == 2 else [block])]
-    form = separator.join("%r" if column.dtype.kind == "f" else "%d" for column in flat) + "\n"
+    form = separator.join(_FLOAT if column.dtype.kind == "f" else "%d" for column in flat) + "\n"
     for start in range(0, len(flat[0]), _ROWS_AT_ONCE):
         chunk = [column[start : start + _ROWS_AT_ONCE].tolist() for column in flat]
         yield (form * len(chunk[0])) % tuple(chain.from_iterable(zip(*chunk, strict=True)))
