@@ -7,7 +7,7 @@ import errno
 import os
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Annotated, BinaryIO
 
@@ -71,15 +71,21 @@ def triangulate(
     target = _next_name(source) if output is None else output
     if os.path.splitext(target)[1] not in (".node", ".ele", ".npz"):
         raise typer.BadParameter(f"{target}: triangles go into .node and .ele, or .npz", param_hint="-o")
+    if os.path.realpath(source) in (os.path.realpath(target), os.path.realpath(f"{os.path.splitext(target)[0]}.node")):
+        raise typer.BadParameter(f"{target}: would overwrite the input", param_hint="-o")
     from exactkernel.jit import is_cache_warm
     from exactmesh.delaunay import delaunay
+    from exactmesh.errors import ExactMeshError, FileFormatError
     from exactmesh.io import read_points, write
     from exactmesh.progress import working
 
     with working(f"reading {source}"):
         points = read_points(source)
     with working("triangulating", compiling=not is_cache_warm()) as progress:
-        triangulation = delaunay(points.points, seed=seed, progress=progress)
+        try:
+            triangulation = delaunay(points.points, seed=seed, progress=progress)
+        except ExactMeshError as error:
+            raise FileFormatError(str(error), path=source) from error
     with working(f"writing {target}"):
         mesh = _carried_over(points, triangulation)
         paths = write(target, mesh)
@@ -211,44 +217,14 @@ def info(mesh: _Mesh) -> None:
 
     from exactmesh.io import read
     from exactmesh.progress import working
+    from exactmesh.summary import facts
 
     with working(f"reading {mesh}"):
-        rows = _facts(read(mesh))
+        rows = list(facts(read(mesh)))
     table = Table(title=mesh, title_justify="left", show_header=False)
     for name, value in rows:
         table.add_row(name, value)
     Console(highlight=False).print(table)
-
-
-def _facts(mesh: "Mesh") -> Iterator[tuple[str, str]]:
-    import numpy as np
-
-    from exactmesh.quality import statistics_of
-
-    points, triangles = mesh.points, mesh.triangles
-    yield "points", f"{len(points):,}, counted from {mesh.base}"
-    if len(points):
-        yield "duplicates", f"{len(points) - len(np.unique(points + 0.0, axis=0)):,}"
-        for axis, name in enumerate("xy"):
-            yield name, f"{points[:, axis].min()!s} to {points[:, axis].max()!s}"
-    if mesh.point_attributes is not None:
-        yield "attributes of a point", str(mesh.point_attributes.shape[1])
-    if mesh.point_markers is not None:
-        yield "point markers", f"{mesh.point_markers.min(initial=0)} to {mesh.point_markers.max(initial=0)}"
-    if triangles is None:
-        return
-    yield "triangles", f"{len(triangles):,}"
-    sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
-    edges, uses = np.unique(sides[:, 0] << 32 | sides[:, 1], return_counts=True)
-    boundary = int(np.count_nonzero(uses == 1))
-    yield "edges", f"{len(edges):,}, {boundary:,} of them on the boundary"
-    if mesh.triangle_attributes is not None:
-        yield "attributes of a triangle", str(mesh.triangle_attributes.shape[1])
-    if len(triangles):
-        figures = statistics_of(points, triangles, len(edges), boundary)
-        yield "angles", f"{figures.smallest_angle:.6g} to {figures.largest_angle:.6g} degrees"
-        yield "areas", f"{figures.smallest_area:.6g} to {figures.largest_area:.6g}, together {figures.area:.6g}"
-        yield "edge lengths", f"{figures.shortest_edge:.6g} to {figures.longest_edge:.6g}"
 
 
 @app.command()
