@@ -72,7 +72,7 @@ class TestTriangulate:
         given = [(0, 0), (1, 0), (0, 0), (0, 1), (1, 0), (0.0, -0.0)]
         write("x.node", Mesh(given, point_attributes=np.arange(6.0)[:, None], point_markers=np.arange(10, 16), base=1))
         assert main(["triangulate", "x.node"]) == 0
-        assert "3 of 6 points are duplicates, left out: 3 is 1, 5 is 2, 6 is 1\n" in capsys.readouterr().out
+        assert "3 of 6 points left out as duplicates: 3 of 1, 5 of 2, 6 of 1\n" in capsys.readouterr().out
         mesh = read("x.1.node")
         assert mesh.base == 1
         assert mesh.point_attributes is not None
@@ -122,6 +122,13 @@ class TestVerify:
         assert main(["verify", "clockwise.npz"]) == 1
         assert main(["verify", "clockwise.npz", "--orientation", "any"]) == 0
 
+    def test_numbering_is_said(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write("one.ele", Mesh(THIN, triangles=NOT_DELAUNAY, base=1))
+        assert main(["verify", "one.ele"]) == 1
+        assert "count from 0, those in the files from 1" in capsys.readouterr().out
+        assert main(["verify", "bad.ele"]) == 1
+        assert "count from" not in capsys.readouterr().out
+
     def test_json(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["verify", "bad.ele", "--json", "-"]) == 1
         printed = json.loads(capsys.readouterr().out)
@@ -161,7 +168,7 @@ class TestInfo:
             "point markers": "5 to 8",
             "triangles": "1",
             "edges": "3, 3 of them on the boundary",
-            "angles": "36.8699 to 90 degrees",
+            "angles": "36.8698976 to 90 degrees",
             "areas": "6 to 6, together 6",
             "edge lengths": "3 to 5",
         }
@@ -263,3 +270,13 @@ class TestTheCommandItself:
         code += "os.kill(os.getpid(), signal.SIGINT); sys.exit(cli.main(['info', 'm.node']))"
         done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "exactmesh: interrupted\n")
+
+    @pytest.mark.skipif(shutil.which("sh") is None, reason="pipes as POSIX has them")
+    def test_a_reader_that_leaves_is_no_violation(self, inside: Path) -> None:
+        write("good.ele", Mesh(THIN, triangles=DELAUNAY))
+        reading, writing = os.pipe()
+        os.close(reading)
+        command = [sys.executable, "-m", "exactmesh.cli", "verify", "good.ele"]
+        done = subprocess.run(command, cwd=inside, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writing)
+        assert (done.returncode, done.stderr) == (141, "")

@@ -1,6 +1,6 @@
 """The command ``exactmesh``: 0 means yes, 1 a violation, 2 bad input or usage, 130 an interrupt.
 
-Whatever loads numba is imported where it is needed, so that ``--help`` and a wrong path answer at once.
+Imports stand where they are needed, so that ``--help`` and a wrong path answer at once.
 """
 
 import errno
@@ -26,6 +26,7 @@ __all__ = ["app", "main"]
 _VIOLATION = 1
 _BAD_INPUT = 2
 _INTERRUPTED = 130
+_READER_GONE = 141  # as a shell reports SIGPIPE: neither yes nor no
 _DUPLICATES_NAMED = 3
 
 #: click's base of wrong options, missing arguments and so on; typer may carry its own copy of click.
@@ -134,9 +135,9 @@ def _duplicates(triangulation: "Triangulation", base: int) -> str | None:
     if not len(left_out):
         return None
     kept = first[triangulation.representative[left_out[:_DUPLICATES_NAMED]]]
-    named = ", ".join(f"{base + i} is {base + k}" for i, k in zip(left_out, kept, strict=False))
+    named = ", ".join(f"{base + i} of {base + k}" for i, k in zip(left_out, kept, strict=False))
     more = ", ..." if len(left_out) > _DUPLICATES_NAMED else ""
-    return f"{len(left_out)} of {total} points are duplicates, left out: {named}{more}"
+    return f"{len(left_out)} of {total} points left out as duplicates: {named}{more}"
 
 
 @app.command()
@@ -147,7 +148,9 @@ def verify(
         typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all up to delaunay."),
     ] = None,
     orientation: Annotated[str, typer.Option(metavar="ccw|any", help="How triangles may be listed.")] = "ccw",
-    json: Annotated[str | None, typer.Option(metavar="FILE", help="Write the report as JSON; - prints it.")] = None,
+    json: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
+    ] = None,
 ) -> None:
     """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
     _require_file(mesh)
@@ -157,16 +160,18 @@ def verify(
     from exactmesh.verify.properties import claimed_properties, orientation_of
 
     claims, orders = claimed_properties(claim or None), orientation_of(orientation)
-    points, triangles = _triangles_of(mesh)
+    points, triangles, base = _triangles_of(mesh)
     with working(f"verifying {mesh}", compiling=not is_cache_warm()):
         report = check(points, triangles, claims=claims, orientation=orders)
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))
+    if base and json != "-" and report.violations:
+        typer.echo(f"(Numbers in this report count from 0, those in the files from {base}.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 
-def _triangles_of(path: str) -> "tuple[FloatArray, IntArray]":
+def _triangles_of(path: str) -> "tuple[FloatArray, IntArray, int]":
     from exactmesh.errors import FileFormatError
     from exactmesh.io import read_triangles
     from exactmesh.progress import working
@@ -175,7 +180,7 @@ def _triangles_of(path: str) -> "tuple[FloatArray, IntArray]":
         mesh = read_triangles(path)
     if mesh.triangles is None:
         raise FileFormatError("there are no triangles on file, only points", path=path)
-    return mesh.points, mesh.triangles
+    return mesh.points, mesh.triangles, mesh.base
 
 
 def _write_text(path: str, text: str) -> None:
@@ -254,6 +259,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = app(arguments, prog_name="exactmesh", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         code = _INTERRUPTED
+    except SystemExit:  # what typer makes of a closed pipe; its code 1 would say "a violation"
+        return _READER_GONE
     except _UsageError as error:
         return _complain(f"{error.format_message()} (see exactmesh --help)")
     except OSError as error:

@@ -15,7 +15,8 @@ def facts(mesh: Mesh) -> Iterator[tuple[str, str]]:
     points, triangles = mesh.points, mesh.triangles
     yield "points", f"{len(points):,}, counted from {mesh.base}"
     if len(points):
-        yield "duplicates", f"{len(points) - len(np.unique(points + 0.0, axis=0)):,}"
+        positions = (points + 0.0).view(np.complex128)  # one sortable number a point; -0.0 + 0.0 is 0.0
+        yield "duplicates", f"{len(points) - len(np.unique(positions)):,}"
         for axis, name in enumerate("xy"):
             yield name, f"{points[:, axis].min()!s} to {points[:, axis].max()!s}"
     if mesh.point_attributes is not None:
@@ -33,6 +34,6 @@ def facts(mesh: Mesh) -> Iterator[tuple[str, str]]:
         yield "attributes of a triangle", str(mesh.triangle_attributes.shape[1])
     if len(triangles):
         figures = statistics_of(points, triangles, len(edges), boundary)
-        yield "angles", f"{figures.smallest_angle:.6g} to {figures.largest_angle:.6g} degrees"
+        yield "angles", f"{figures.smallest_angle:.9g} to {figures.largest_angle:.9g} degrees"
         yield "areas", f"{figures.smallest_area:.6g} to {figures.largest_area:.6g}, together {figures.area:.6g}"
         yield "edge lengths", f"{figures.shortest_edge:.6g} to {figures.longest_edge:.6g}"
