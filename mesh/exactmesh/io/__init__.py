@@ -1,0 +1,19 @@
+"""Mesh files: Triangle's text formats, ``.npz`` archives, ``.csv`` points; the suffix chooses.
+
+========================  =========================================================================
+``.node``                 points, their attributes and markers
+``.ele``                  triangles and their attributes (of six-node elements, the three corners)
+``.neigh`` ``.edge``      neighbours; edges and their markers
+``.npz``                  all arrays of a :class:`Mesh`, by their names
+``.csv``                  points: with a header that names x and y, or two columns without one
+========================  =========================================================================
+
+Triangle's files belong together by their stem: ``box.1.ele`` needs ``box.1.node`` beside it.
+
+Reference: [Shewchuk 1996]
+"""
+
+from exactmesh.io.files import read, read_points, read_triangles, write
+from exactmesh.io.model import Mesh, Triangulated, mesh_of
+
+__all__ = ["Mesh", "Triangulated", "mesh_of", "read", "read_points", "read_triangles", "write"]

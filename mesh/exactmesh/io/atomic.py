@@ -1,0 +1,37 @@
+"""Files are written whole or not at all."""
+
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import BinaryIO
+
+__all__ = ["Writer", "write_whole"]
+
+#: Writes one file's content to a stream.
+Writer = Callable[[BinaryIO], None]
+
+
+def write_whole(files: Mapping[str, Writer]) -> None:
+    """Write files beside their places, and move them there when all of them are complete.
+
+    Raises:
+        OSError: a file cannot be written; what stood at the paths is untouched.
+    """
+    finished: dict[str, str] = {}
+    try:
+        for path, write in files.items():
+            place = os.path.realpath(path)  # a symbolic link stays one
+            if os.path.isdir(place):
+                raise IsADirectoryError(21, "Is a directory", path)
+            finished[place] = temporary = f"{place}.{os.getpid()}.tmp"
+            with open(temporary, "xb") as stream:
+                write(stream)
+            if os.path.exists(place):
+                shutil.copymode(place, temporary)
+        for place, temporary in finished.items():
+            os.replace(temporary, place)
+    finally:
+        for temporary in finished.values():
+            with suppress(OSError):
+                os.remove(temporary)

@@ -1,0 +1,282 @@
+"""The command: what it writes is verified, its exit code is the answer, and a fault is one line that says where."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from exactmesh import cli
+from exactmesh.cli import main
+from exactmesh.io import Mesh, read, write
+from exactmesh.verify import verify
+
+SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.25)]
+THIN = [(0.0, 0.0), (4.0, -1.0), (8.0, 0.0), (4.0, 1.0)]
+DELAUNAY, NOT_DELAUNAY = [(0, 1, 3), (1, 2, 3)], [(0, 1, 2), (0, 2, 3)]
+
+
+@pytest.fixture(autouse=True)
+def inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def complaint(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 2) -> str:
+    """Run the command, and return its one line on standard error."""
+    assert main(arguments) == code
+    captured = capsys.readouterr()
+    assert captured.err.endswith("\n")
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+    return captured.err
+
+
+class TestTriangulate:
+    """The files that ``triangulate`` writes are a Delaunay triangulation of the points in its input."""
+
+    @pytest.mark.parametrize("suffix", [".node", ".csv", ".npz"])
+    def test_is_delaunay(self, suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+        points = np.random.default_rng(1).random((200, 2))
+        write(f"x{suffix}", Mesh(points))
+        assert main(["triangulate", f"x{suffix}"]) == 0
+        assert capsys.readouterr().out.startswith("200 points, ")
+        mesh = read("x.1.ele")
+        assert mesh.triangles is not None
+        assert mesh.points.tobytes() == points.tobytes()
+        assert verify(mesh.points, mesh.triangles).ok
+        assert not verify(mesh.points, mesh.triangles[1:]).ok  # control
+
+    @pytest.mark.parametrize(
+        ("source", "target"),
+        [("x.node", "x.1.node"), ("x.1.node", "x.2.node"), ("x.9.csv", "x.10.node"), ("x.a.npz", "x.a.1.node")],
+    )
+    def test_names_as_triangle_gives_them(self, source: str, target: str) -> None:
+        write(source, Mesh(SQUARE))
+        assert main(["triangulate", source]) == 0
+        assert sorted(os.listdir()) == sorted([source, target, target.replace(".node", ".ele")])
+
+    def test_output_by_suffix(self) -> None:
+        write("x.node", Mesh(SQUARE))
+        assert main(["triangulate", "x.node", "-o", "out.npz"]) == 0
+        assert main(["triangulate", "x.node", "-o", "out.ele", "--seed", "5"]) == 0
+        assert sorted(os.listdir()) == ["out.ele", "out.node", "out.npz", "x.node"]
+
+    def test_attributes_and_duplicates(self, capsys: pytest.CaptureFixture[str]) -> None:
+        given = [(0, 0), (1, 0), (0, 0), (0, 1), (1, 0), (0.0, -0.0)]
+        write("x.node", Mesh(given, point_attributes=np.arange(6.0)[:, None], point_markers=np.arange(10, 16), base=1))
+        assert main(["triangulate", "x.node"]) == 0
+        assert "3 of 6 points left out as duplicates: 3 of 1, 5 of 2, 6 of 1\n" in capsys.readouterr().out
+        mesh = read("x.1.node")
+        assert mesh.base == 1
+        assert mesh.point_attributes is not None
+        assert mesh.point_markers is not None
+        carried = zip(
+            mesh.points.tolist(), mesh.point_attributes[:, 0].tolist(), mesh.point_markers.tolist(), strict=True
+        )
+        assert sorted(carried) == [([0, 0], 0, 10), ([0, 1], 3, 13), ([1, 0], 1, 11)]
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("nan.node").write_text("3 2\n1 0 0\n2 nan 0\n3 0 1\n")
+        write("line.node", Mesh([(0, 0), (1, 1), (2, 2)]))
+        write("two.node", Mesh([(0, 0), (1, 1)]))
+        write("x.node", Mesh(SQUARE))
+        before = sorted(os.listdir())
+        assert complaint(capsys, "triangulate", "nix.node") == "exactmesh: nix.node: no such file\n"
+        assert "nan.node:3: 'nan'" in complaint(capsys, "triangulate", "nan.node")
+        assert complaint(capsys, "triangulate", "line.node").startswith("exactmesh: line.node: ")
+        assert complaint(capsys, "triangulate", "two.node").startswith("exactmesh: two.node: 2 points")
+        assert "out.csv" in complaint(capsys, "triangulate", "x.node", "-o", "out.csv")
+        assert "nowhere" in complaint(capsys, "triangulate", "x.node", "-o", "nowhere/out.node")
+        assert "would overwrite" in complaint(capsys, "triangulate", "x.node", "-o", "./x.ele")
+        assert "seed" in complaint(capsys, "triangulate", "x.node", "--seed", "many")
+        assert sorted(os.listdir()) == before
+
+
+class TestVerify:
+    """The exit code is 0 if every claim holds, 1 if one does not, 2 if there is nothing to judge."""
+
+    @pytest.fixture(autouse=True)
+    def _meshes(self) -> None:
+        write("good.ele", Mesh(THIN, triangles=DELAUNAY))
+        write("bad.ele", Mesh(THIN, triangles=NOT_DELAUNAY))
+        write("clockwise.npz", Mesh(THIN, triangles=np.array(DELAUNAY)[:, ::-1]))
+
+    def test_verdict(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["verify", "good.ele"]) == 0
+        assert "every claim holds" in capsys.readouterr().out
+        assert main(["verify", "bad.ele"]) == 1
+        captured = capsys.readouterr()
+        assert re.search(r"delaunay +fails", captured.out)
+        assert captured.err == ""
+
+    def test_claims_and_orientation(self) -> None:
+        assert main(["verify", "bad.ele", "--claim", "admissible", "--claim", "covers_hull"]) == 0
+        assert main(["verify", "bad.ele", "--claim", "acute"]) == 1
+        assert main(["verify", "clockwise.npz"]) == 1
+        assert main(["verify", "clockwise.npz", "--orientation", "any"]) == 0
+
+    def test_numbering_is_said(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write("one.ele", Mesh(THIN, triangles=NOT_DELAUNAY, base=1))
+        assert main(["verify", "one.ele"]) == 1
+        assert "count from 0, those in the files from 1" in capsys.readouterr().out
+        assert main(["verify", "bad.ele"]) == 1
+        assert "count from" not in capsys.readouterr().out
+
+    def test_json(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["verify", "bad.ele", "--json", "-"]) == 1
+        printed = json.loads(capsys.readouterr().out)
+        assert main(["verify", "bad.ele", "--json", "report.json"]) == 1
+        assert json.loads(Path("report.json").read_text()) == printed
+        assert printed["ok"] is False
+        capsys.readouterr()
+        assert main(["verify", "good.ele", "--json", "-"]) == 0
+        assert json.loads(capsys.readouterr().out)["ok"] is True
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("far.node").write_text("3 2\n1 0 0\n2 1 0\n3 0 1\n")
+        Path("far.ele").write_text("1 3\n1 1 2 4\n")
+        write("points.csv", Mesh(SQUARE))
+        assert "far.ele:2: point 4" in complaint(capsys, "verify", "far.ele")
+        assert "no triangles" in complaint(capsys, "verify", "points.csv")
+        assert "'beautiful'" in complaint(capsys, "verify", "good.ele", "--claim", "beautiful")
+        assert "'upwards'" in complaint(capsys, "verify", "good.ele", "--orientation", "upwards")
+        assert "MESH" in complaint(capsys, "verify")
+        assert "--frobnicate" in complaint(capsys, "verify", "good.ele", "--frobnicate")
+        assert "nowhere" in complaint(capsys, "verify", "good.ele", "--json", "nowhere/report.json")
+
+
+class TestInfo:
+    """``info`` prints counts and extents that a reader can check by hand."""
+
+    def test_by_hand(self, capsys: pytest.CaptureFixture[str]) -> None:
+        points = [(0, 0), (4, 0), (0, 3), (4, 0)]
+        write("m.ele", Mesh(points, triangles=[(0, 1, 2)], point_markers=[5, 6, 7, 8], base=1))
+        assert main(["info", "m.ele"]) == 0
+        told = capsys.readouterr().out
+        facts = {
+            "points": "4, counted from 1",
+            "duplicates": "1",
+            "x": "0.0 to 4.0",
+            "y": "0.0 to 3.0",
+            "point markers": "5 to 8",
+            "triangles": "1",
+            "edges": "3, 3 of them on the boundary",
+            "angles": "36.8698976 to 90 degrees",
+            "areas": "6 to 6, together 6",
+            "edge lengths": "3 to 5",
+        }
+        for name, value in facts.items():
+            assert re.search(rf"\b{name} +│ +{re.escape(value)} ", told), (name, told)
+        assert not re.search(r"\btriangles +│ +2 ", told)  # control
+
+    @pytest.mark.parametrize("mesh", [Mesh(np.zeros((0, 2))), Mesh([(1e308, -1e308)], triangles=np.zeros((0, 3), int))])
+    def test_next_to_nothing(self, mesh: Mesh) -> None:
+        write("m.npz", mesh)
+        assert main(["info", "m.npz"]) == 0
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("m.node").write_bytes(b"\x00\x01")
+        assert complaint(capsys, "info", "m.node").startswith("exactmesh: m.node:1: ")
+
+
+class TestPlot:
+    """``plot`` writes the picture, or says why not."""
+
+    def test_picture(self) -> None:
+        write("m.ele", Mesh(THIN, triangles=DELAUNAY))
+        assert main(["plot", "m.ele", "-o", "m.png"]) == 0
+        assert Path("m.png").read_bytes().startswith(b"\x89PNG")
+        assert main(["plot", "m.node", "-o", "m.svg", "--title", "thin"]) == 0
+        assert b"</svg>" in Path("m.svg").read_bytes()
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+        write("m.ele", Mesh(THIN, triangles=DELAUNAY))
+        assert "m.bmp" in complaint(capsys, "plot", "m.ele", "-o", "m.bmp")
+        assert "--output" in complaint(capsys, "plot", "m.ele")
+        monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+        assert "pip install 'exactmesh[plot]'" in complaint(capsys, "plot", "m.ele", "-o", "m.png")
+        assert not Path("m.png").exists()
+
+
+class TestDemo:
+    """``demo`` needs nothing, verifies what it shows, and names the folder of its pictures."""
+
+    def test_whole(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["demo"]) == 0
+        told = capsys.readouterr().out
+        assert re.search(r"delaunay +│ +holds +│ +holds", told)
+        for name in ("mosaic", "course"):
+            assert f"exactmesh-demo/{name}.png" in told
+            assert Path(f"exactmesh-demo/{name}.png").read_bytes().startswith(b"\x89PNG")
+
+    def test_without_matplotlib(self, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+        assert main(["demo", "-o", "elsewhere"]) == 0
+        assert "pip install 'exactmesh[plot]'" in capsys.readouterr().out
+
+    def test_control_a_wrong_triangulation_is_a_violation(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        from exactmesh import demo as module
+
+        monkeypatch.setattr(module, "verify", lambda points, triangles: verify(points, triangles[1:]))
+        assert main(["demo"]) == 1
+
+    def test_a_file_in_the_way(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("taken").touch()
+        assert main(["demo", "-o", "taken"]) == 2
+        assert capsys.readouterr().err.startswith("exactmesh: taken: ")
+
+
+class TestTheCommandItself:
+    """Help and version are at hand; an interrupt is one line and code 130; no fault shows a traceback."""
+
+    @pytest.mark.parametrize("arguments", [[], ["--help"], ["verify", "--help"]])
+    def test_help(self, arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(arguments) == 0
+        assert "Usage: exactmesh" in capsys.readouterr().out
+
+    def test_version(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["--version"]) == 0
+        assert re.fullmatch(r"exactmesh \d+\.\d+\.\d+\S*\n", capsys.readouterr().out)
+
+    def test_unknown_command(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert "tessellate" in complaint(capsys, "tessellate")
+
+    def test_interrupt(self, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+        def interrupted(_path: str) -> None:
+            raise KeyboardInterrupt
+
+        write("m.node", Mesh(SQUARE))
+        monkeypatch.setattr(cli, "_require_file", interrupted)
+        assert complaint(capsys, "info", "m.node", code=130) == "exactmesh: interrupted\n"
+
+    def test_a_fault_of_ours_is_not_hidden(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        def broken(_path: str) -> None:
+            raise ValueError("a bug")
+
+        monkeypatch.setattr(cli, "_require_file", broken)
+        with pytest.raises(ValueError, match="a bug"):
+            main(["info", "m.node"])
+
+    @pytest.mark.skipif(shutil.which("sh") is None, reason="signals as POSIX has them")
+    def test_ctrl_c_in_a_process(self, inside: Path) -> None:
+        code = "import os, signal, sys; from exactmesh import cli; cli._require_file = lambda path: "
+        code += "os.kill(os.getpid(), signal.SIGINT); sys.exit(cli.main(['info', 'm.node']))"
+        done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "exactmesh: interrupted\n")
+
+    @pytest.mark.skipif(shutil.which("sh") is None, reason="pipes as POSIX has them")
+    def test_a_reader_that_leaves_is_no_violation(self, inside: Path) -> None:
+        write("good.ele", Mesh(THIN, triangles=DELAUNAY))
+        reading, writing = os.pipe()
+        os.close(reading)
+        command = [sys.executable, "-m", "exactmesh.cli", "verify", "good.ele"]
+        done = subprocess.run(command, cwd=inside, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+        os.close(writing)
+        assert (done.returncode, done.stderr) == (141, "")
