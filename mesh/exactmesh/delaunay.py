@@ -286,7 +286,7 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
     kept, vertex, representative = _number_vertices(order, twin)
     triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), ghost=len(order))
     return Triangulation(
-        points=given[kept],
+        points=given.take(kept, axis=0),
         triangles=vertex.take(triangles),
         neighbors=neighbors,
         representative=representative,

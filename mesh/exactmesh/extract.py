@@ -4,7 +4,7 @@ import numpy as np
 
 from exactkernel.jit import jit
 from exactkernel.types import IntArray
-from exactmesh.edgealgebra import EdgeArray, left_next, origin
+from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin
 
 __all__ = ["NO_GHOST", "OUTER", "triangles_of"]
 
@@ -28,8 +28,8 @@ def _collect(
         e = 2 * half
         f = left_next(ring, e)
         g = left_next(ring, f)
-        a, b, c = origin(org, e), origin(org, f), origin(org, g)
-        if a == ghost or b == ghost or c == ghost or left_next(ring, g) != e:
+        a, b, c = origin(org, e), dest(org, e), dest(org, f)  # e's two ends lie side by side in memory
+        if a == ghost or b == ghost or c == ghost:
             continue
         triangles[3 * m], triangles[3 * m + 1], triangles[3 * m + 2] = a, b, c
         slot[f >> 1], slot[g >> 1], slot[e >> 1] = 4 * m, 4 * m + 1, 4 * m + 2
@@ -44,7 +44,7 @@ def _collect(
 
 
 def triangles_of(ring: EdgeArray, org: EdgeArray, slot: EdgeArray, ghost: int = NO_GHOST) -> tuple[IntArray, IntArray]:
-    """Return (triangles, neighbors), int32 (m, 3) each, of the triangular faces. O(edges).
+    """Return (triangles, neighbors), int32 (m, 3) each, of the faces, which are triangles. O(edges).
 
     ``slot`` is scratch, one entry for each directed edge: -1, or OUTER if its left face does not belong to the result.
     Faces at the ghost vertex do not, either.

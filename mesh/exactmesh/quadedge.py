@@ -292,11 +292,13 @@ class QuadEdge:
 
     def triangles(self) -> IntArray:
         """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""
-        live = np.flatnonzero(self._ring[: 4 * self._count : 4] != _FREE)
-        slot = np.full(2 * self._count, OUTER, dtype=np.int32)
-        for half in (2 * live, 2 * live + 1):
-            slot[half[self._face[half ^ 1] != OUTSIDE]] = -1
-        return triangles_of(self._ring, self._vertex, slot)[0]
+        half = np.arange(2 * self._count, dtype=np.int32)
+        after = self._ring[(2 * half) ^ 3] ^ 3  # left_next of every primal edge, nonsense for deleted ones
+        live = self._ring[2 * half] != _FREE
+        after[~live] = 0
+        triangular = after[after[after >> 1] >> 1] == 2 * half
+        wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
+        return triangles_of(self._ring, self._vertex, np.where(wanted, -1, OUTER).astype(np.int32))[0]
 
     def __len__(self) -> int:
         """Return the number of edges (each with its four quarter-edges)."""
