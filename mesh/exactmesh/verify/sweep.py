@@ -58,17 +58,14 @@ def turn(k: Context, points: FloatArray, a: int, b: int, c: int) -> int:
 
 @jit
 def meet_improperly(k: Context, s: Segments, e: int, f: int) -> bool:
-    """Tell whether two edges with at most one common vertex meet elsewhere. Ranks order collinear
-    vertices."""
+    """Tell whether two edges meet elsewhere than in a common vertex.
+
+    Both are met by the sweep line now: none begins where the other ends, and if they are collinear they overlap.
+    """
     a, b, c, d = s.low[e], s.high[e], s.low[f], s.high[f]
     if a == c or b == d:
         return turn(k, s.points, a, b, d if a == c else c) == 0
-    if a == d or b == c:
-        return False
-    from_c, from_d = turn(k, s.points, a, b, c), turn(k, s.points, a, b, d)
-    if from_c == 0 and from_d == 0:
-        return bool(c < b and a < d)
-    if from_c * from_d > 0:
+    if turn(k, s.points, a, b, c) * turn(k, s.points, a, b, d) > 0:
         return False
     return bool(turn(k, s.points, c, d, a) * turn(k, s.points, c, d, b) <= 0)
 
