@@ -83,7 +83,7 @@ def neighbours_meet(k: Context, s: Segments, below: int, above: int, witness: In
 def locate(k: Context, s: Segments, status: Status, e: int) -> tuple[int, int, int]:
     """Return the neighbours between which e begins, and the edge that passes through its beginning or NIL."""
     v = s.low[e]
-    below = above = np.intp(NIL)
+    below = above = int(NIL)
     node = status.root[0]
     while node != NIL:
         if s.low[node] == v:
@@ -105,7 +105,7 @@ def locate(k: Context, s: Segments, status: Status, e: int) -> tuple[int, int, i
 def end_edges(k: Context, s: Segments, status: Status, v: int, witness: IndexArray) -> bool:
     """Remove the edges that end at v: they are neighbours of each other. Tell whether an improper meeting
     showed."""
-    below = above = np.intp(NIL)  # not the literal: numba would compile the callees once more for it
+    below = above = int(NIL)  # not the literal: numba would compile the callees once more for it
     for i in range(s.first_high[v], s.first_high[v + 1]):
         e = s.ending[i]
         below, above = status.below[e], status.above[e]
