@@ -26,7 +26,7 @@ PROPER = 0
 IMPROPER = 1  # two edges meet elsewhere than in a vertex that they share
 COVERED_TWICE = 2  # the left side of an edge has winding number two
 
-_CHUNK = 1 << 18  # vertices between two looks at Ctrl-C
+_CHUNK = 1 << 14  # vertices between two looks at Ctrl-C
 
 
 class Segments(NamedTuple):
