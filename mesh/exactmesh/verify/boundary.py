@@ -17,6 +17,9 @@ from exactmesh.verify.witness import IndexArray
 __all__ = ["Boundary", "boundary_of", "convex_cycle", "lexicographically_before", "outside_of"]
 
 
+_CHUNK = 1 << 14  # points between two looks at Ctrl-C
+
+
 class Boundary(NamedTuple):
     """The directed edges that no triangle has in reverse, their triangles on the left.
 
@@ -125,6 +128,8 @@ def outside_of(mesh: Mesh, cycle: IndexArray, vertices: IndexArray) -> IndexArra
     right = int(order[-1] - order[0]) % len(cycle)
     lower, upper = cycle[: right + 1], np.append(cycle[right:], cycle[0])[::-1].copy()
     outside = np.empty(len(vertices), dtype=np.bool_)
-    find_outside(mesh.context, mesh.coordinates, lower, upper, vertices, outside)
-    raise_if_interrupted()
+    for start in range(0, len(vertices), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        find_outside(mesh.context, mesh.coordinates, lower, upper, vertices[part], outside[part])
+        raise_if_interrupted()
     return vertices[outside]

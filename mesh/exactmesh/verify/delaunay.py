@@ -73,6 +73,8 @@ def _enclosed(mesh: Mesh, v: int) -> Violation:
 
 def _edges(mesh: Mesh, links: Links) -> Finding:
     slots = slots_of(links, NOT_DELAUNAY)
+    if not slots.size:
+        return Finding(Verdict.HOLDS)
     told = slots[:WITNESSES]
     v, b, c = ends_of(links, told)
     d = _far_corners(links, v, b)

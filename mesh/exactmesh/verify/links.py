@@ -38,7 +38,7 @@ REPEATED = 2  # v -> b occurred before in this bucket
 CROWDED = 3  # matched by more than one b -> v
 NOT_DELAUNAY = 4  # INNER, v < b, and the far corner lies inside the circle of (v, b, c)
 
-_CHUNK = 1 << 17  # vertices between two looks at Ctrl-C
+_CHUNK = 1 << 15  # vertices between two looks at Ctrl-C
 _LARGE = 64  # buckets from this size on are sorted by numpy: insertion is for the small ones
 _LOW = 0xFFFFFFFF
 

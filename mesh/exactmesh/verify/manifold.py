@@ -87,6 +87,8 @@ def check_fans(mesh: Mesh, links: Links) -> Finding:
 
 def fans_finding(mesh: Mesh, broken: IndexArray) -> Finding:
     """Return VERTEX_MANIFOLD, given the vertices round which the triangles do not form one fan."""
+    if not broken.size:
+        return Finding(Verdict.HOLDS)
     rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points))
 
     def describe(v: int) -> Violation:

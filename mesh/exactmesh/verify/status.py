@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exactkernel.jit import jit
-from exactkernel.types import IntArray
+from exactmesh.verify.witness import IndexArray
 
 __all__ = ["NIL", "Status", "empty_status", "insert", "remove"]
 
@@ -21,31 +21,31 @@ class Status(NamedTuple):
     """The tree and the list.
 
     Attributes:
-        child: int32 (b, 2): the subtree below, the subtree above.
-        parent, below, above: int32 (b,): the parent in the tree, the neighbours in the list.
-        priority: int32 (b,): a random permutation; a parent's is larger.
-        root: int32 (1,).
+        child: intp (b, 2): the subtree below, the subtree above.
+        parent, below, above: intp (b,): the parent in the tree, the neighbours in the list.
+        priority: intp (b,): a random permutation; a parent's is larger.
+        root: intp (1,).
     """
 
-    child: IntArray
-    parent: IntArray
-    below: IntArray
-    above: IntArray
-    priority: IntArray
-    root: IntArray
+    child: IndexArray
+    parent: IndexArray
+    below: IndexArray
+    above: IndexArray
+    priority: IndexArray
+    root: IndexArray
 
 
 def empty_status(size: int) -> Status:
     """Return the empty status for edges 0 .. size - 1."""
-    nil = np.full((5, size), NIL, dtype=np.int32)
-    priority = np.random.default_rng(0).permutation(size).astype(np.int32)
+    nil = np.full((5, size), NIL, dtype=np.intp)
+    priority = np.random.default_rng(0).permutation(size)
     return Status(
-        np.full((size, 2), NIL, dtype=np.int32),
+        np.full((size, 2), NIL, dtype=np.intp),
         nil[0],
         nil[1],
         nil[2],
         priority,
-        np.full(1, NIL, dtype=np.int32),
+        np.full(1, NIL, dtype=np.intp),
     )
 
 

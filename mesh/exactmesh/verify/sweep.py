@@ -11,13 +11,12 @@ ever computed.
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from exactkernel.context import Context
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
-from exactkernel.types import FloatArray, IntArray, SignArray
+from exactkernel.types import FloatArray, SignArray
 from exactmesh.verify.status import NIL, Status, empty_status, insert, remove
 from exactmesh.verify.witness import IndexArray
 
@@ -27,7 +26,7 @@ PROPER = 0
 IMPROPER = 1  # two edges meet elsewhere than in a vertex that they share
 COVERED_TWICE = 2  # the left side of an edge has winding number two
 
-_CHUNK = 1 << 18  # vertices between two looks at Ctrl-C
+_CHUNK = 1 << 14  # vertices between two looks at Ctrl-C
 
 
 class Segments(NamedTuple):
@@ -35,19 +34,19 @@ class Segments(NamedTuple):
 
     Attributes:
         points: float64 (v, 2), ascending lexicographically: a vertex is its rank.
-        low, high: int32 (b,): the two ends of an edge, low < high; ``low`` ascends.
+        low, high: intp (b,): the two ends of an edge, low < high; ``low`` ascends.
         direction: int8 (b,): +1 if the edge is directed from low to high, so that its left side is above it.
-        first_low: int64 (v + 1,): the edges that begin at a vertex are first_low[v] .. first_low[v + 1] - 1.
+        first_low: intp (v + 1,): the edges that begin at a vertex are first_low[v] .. first_low[v + 1] - 1.
         ending, first_high: the edges that end at v are ending[first_high[v] : first_high[v + 1]].
     """
 
     points: FloatArray
-    low: IntArray
-    high: IntArray
+    low: IndexArray
+    high: IndexArray
     direction: SignArray
-    first_low: npt.NDArray[np.int64]
+    first_low: IndexArray
     ending: IndexArray
-    first_high: npt.NDArray[np.int64]
+    first_high: IndexArray
 
 
 @jit
@@ -58,17 +57,14 @@ def turn(k: Context, points: FloatArray, a: int, b: int, c: int) -> int:
 
 @jit
 def meet_improperly(k: Context, s: Segments, e: int, f: int) -> bool:
-    """Tell whether two edges with at most one common vertex meet elsewhere. Ranks order collinear
-    vertices."""
+    """Tell whether two edges meet elsewhere than in a common vertex.
+
+    Both are met by the sweep line now: none begins where the other ends, and if they are collinear they overlap.
+    """
     a, b, c, d = s.low[e], s.high[e], s.low[f], s.high[f]
     if a == c or b == d:
         return turn(k, s.points, a, b, d if a == c else c) == 0
-    if a == d or b == c:
-        return False
-    from_c, from_d = turn(k, s.points, a, b, c), turn(k, s.points, a, b, d)
-    if from_c == 0 and from_d == 0:
-        return bool(c < b and a < d)
-    if from_c * from_d > 0:
+    if turn(k, s.points, a, b, c) * turn(k, s.points, a, b, d) > 0:
         return False
     return bool(turn(k, s.points, c, d, a) * turn(k, s.points, c, d, b) <= 0)
 
@@ -87,8 +83,8 @@ def neighbours_meet(k: Context, s: Segments, below: int, above: int, witness: In
 def locate(k: Context, s: Segments, status: Status, e: int) -> tuple[int, int, int]:
     """Return the neighbours between which e begins, and the edge that passes through its beginning or NIL."""
     v = s.low[e]
-    below, above = NIL, NIL
-    node = int(status.root[0])
+    below = above = int(NIL)
+    node = status.root[0]
     while node != NIL:
         if s.low[node] == v:
             side = turn(k, s.points, v, s.high[node], s.high[e])
@@ -98,10 +94,10 @@ def locate(k: Context, s: Segments, status: Status, e: int) -> tuple[int, int, i
             return below, above, node
         if side > 0:
             below = node
-            node = int(status.child[node, 1])
+            node = status.child[node, 1]
         else:
             above = node
-            node = int(status.child[node, 0])
+            node = status.child[node, 0]
     return below, above, NIL
 
 
@@ -109,10 +105,10 @@ def locate(k: Context, s: Segments, status: Status, e: int) -> tuple[int, int, i
 def end_edges(k: Context, s: Segments, status: Status, v: int, witness: IndexArray) -> bool:
     """Remove the edges that end at v: they are neighbours of each other. Tell whether an improper meeting
     showed."""
-    below, above = NIL, NIL
+    below = above = int(NIL)  # not the literal: numba would compile the callees once more for it
     for i in range(s.first_high[v], s.first_high[v + 1]):
         e = s.ending[i]
-        below, above = int(status.below[e]), int(status.above[e])
+        below, above = status.below[e], status.above[e]
         remove(status, e)
     return neighbours_meet(k, s, below, above, witness)
 
@@ -169,12 +165,12 @@ def swept(k: Context, points: FloatArray, origin: IndexArray, target: IndexArray
     ending = np.argsort(high[order], kind="stable")
     segments = Segments(
         points=points,
-        low=low[order].astype(np.int32),
-        high=high[order].astype(np.int32),
+        low=low[order],
+        high=high[order],
         direction=np.where(origin < target, 1, -1).astype(np.int8)[order],
-        first_low=np.searchsorted(low[order], ranks).astype(np.int64),
+        first_low=np.searchsorted(low[order], ranks),
         ending=ending,
-        first_high=np.searchsorted(high[order][ending], ranks).astype(np.int64),
+        first_high=np.searchsorted(high[order][ending], ranks),
     )
     status, witness = empty_status(len(order)), np.full(2, NIL, dtype=np.intp)
     for begin in range(0, len(points), _CHUNK):

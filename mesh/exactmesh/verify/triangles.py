@@ -25,7 +25,7 @@ from exactmesh.verify.witness import (
 
 __all__ = ["Shapes", "check_angles", "check_orientation", "classified", "turned"]
 
-CHUNK = 1 << 20  # compiled code cannot be interrupted: Ctrl-C waits for this many triangles at most
+CHUNK = 1 << 17  # compiled code cannot be interrupted: Ctrl-C waits for this many triangles at most
 
 
 class Shapes(NamedTuple):

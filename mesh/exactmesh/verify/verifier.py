@@ -1,7 +1,7 @@
 """verify: what is decided first, and what rests on it."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -127,7 +127,7 @@ def tiled(mesh: Mesh, shapes: Shapes, proper: IntArray) -> Tiling:
     links = linked(mesh.coordinates, mesh.context, proper)
     for finding in (check_zero_area(mesh, shapes), check_overlap(mesh, links)):
         if finding.verdict is Verdict.FAILS:
-            return Tiling(links, finding, None, None)
+            return Tiling(links, replace(finding, lower_bound=True), None, None)
     boundary = boundary_of(links)
     cycle = convex_cycle(mesh, boundary)
     admissible = Finding(Verdict.HOLDS) if cycle is not None else check_sweep(mesh, boundary)
