@@ -133,5 +133,5 @@ def jit(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def jit_inline(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile as :func:`jit` does, and copy the code to each place of call: for the filters, which are short and hot."""
+    """Compile as :func:`jit` does, and copy the code to each place of call: for the short, hot filters."""
     return _compile(function, always_inline=True)

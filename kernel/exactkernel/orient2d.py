@@ -1,4 +1,4 @@
-"""orient2d: do three points turn left, turn right, or lie on a line? Filter, grid, double-double, expansion, rational."""
+"""orient2d: do three points turn left, turn right, or lie on a line?"""
 
 import math
 

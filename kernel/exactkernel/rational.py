@@ -122,11 +122,11 @@ _ask_incircle = _register("exactmesh_incircle_rational", _incircle, 8)
 
 
 @jit
-def _is_answered(mailbox: Mailbox) -> bool:
-    """Tell whether the mailbox holds the answer to the last question."""
+def _is_answered(mailbox: Mailbox, number: int) -> bool:
+    """Tell whether the mailbox holds the answer to this question; another thread may have asked others since."""
     if mailbox[1] == _NEVER:
         raise RuntimeError("the rational stage cannot answer: recursion limit or memory exhausted")
-    return bool(mailbox[1] >> 2 == mailbox[0])
+    return bool(mailbox[1] >> 2 == number)
 
 
 @jit
@@ -146,7 +146,7 @@ def orient2d_from_doubles(mailbox: Mailbox, ax: float, ay: float, bx: float, by:
     while True:
         number = _next_number(mailbox, attempt)
         _ask_orient2d(mailbox.ctypes.data, number, attempt, ax, ay, bx, by, cx, cy)
-        if _is_answered(mailbox):
+        if _is_answered(mailbox, number):
             return int(mailbox[1] & 3) - 2
         attempt += 1
 
@@ -158,7 +158,7 @@ def diametral_from_doubles(mailbox: Mailbox, ax: float, ay: float, bx: float, by
     while True:
         number = _next_number(mailbox, attempt)
         _ask_diametral(mailbox.ctypes.data, number, attempt, ax, ay, bx, by, px, py)
-        if _is_answered(mailbox):
+        if _is_answered(mailbox, number):
             return int(mailbox[1] & 3) - 2
         attempt += 1
 
@@ -172,6 +172,6 @@ def incircle_from_doubles(
     while True:
         number = _next_number(mailbox, attempt)
         _ask_incircle(mailbox.ctypes.data, number, attempt, ax, ay, bx, by, cx, cy, dx, dy)
-        if _is_answered(mailbox):
+        if _is_answered(mailbox, number):
             return int(mailbox[1] & 3) - 2
         attempt += 1
