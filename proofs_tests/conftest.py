@@ -7,10 +7,10 @@ from hypothesis import HealthCheck, settings
 
 from exactkernel.jit import COMPILED
 
-_common = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, HealthCheck.filter_too_much]}
-settings.register_profile("suite", max_examples=150, derandomize=True, **_common)
-settings.register_profile("interpreted", max_examples=60, derandomize=True, **_common)
-settings.register_profile("deep", max_examples=5000, **_common)
+_patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+settings.register_profile("suite", _patient, max_examples=300, derandomize=True)
+settings.register_profile("interpreted", _patient, max_examples=150, derandomize=True)
+settings.register_profile("deep", _patient, max_examples=20000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite" if COMPILED else "interpreted"))
 
 

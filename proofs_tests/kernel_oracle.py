@@ -1,4 +1,4 @@
-"""The predicates from their definitions, in fractions: slow, naive, sharing neither code nor formula with the kernel."""
+"""The predicates from their definitions, in fractions: slow, naive, sharing no code and no formula with the kernel."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -60,6 +60,6 @@ def incircle_perturbed(*points: ExactPoint) -> int:
     """The determinant is linear in the lifts, so the sign is the first among itself and its slopes, largest first."""
     signs = [incircle(*points)]
     exact = _exact(points)
-    for i in sorted(range(4), key=lambda position: exact[position]):
-        signs.append(_lifted(points, [Fraction(i == j) for j in range(4)]))
+    order = sorted(range(4), key=lambda position: exact[position])
+    signs += [_lifted(points, [Fraction(i == j) for j in range(4)]) for i in order]
     return next((sign for sign in signs if sign != 0), 0)

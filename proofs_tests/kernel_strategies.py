@@ -1,4 +1,4 @@
-"""Hypothesis strategies for points where predicates are hard: nearly degenerate, badly scaled, on the edge of the doubles."""
+"""Hypothesis strategies for points where predicates are hard: nearly degenerate, badly scaled, extreme doubles."""
 
 import math
 from typing import TypeAlias
@@ -56,7 +56,7 @@ def near_circle(draw: st.DrawFn, n: int) -> Points:
 
 @st.composite
 def lattice(draw: st.DrawFn, n: int) -> Points:
-    """A few steps of one power of two: exact ties, down to the subnormals and up to 2^960, perhaps far from the origin."""
+    """A few steps of one power of two: exact ties, from the subnormals to 2^960, perhaps far from the origin."""
     exponent = draw(st.one_of(st.integers(-1074, 900), st.sampled_from([-1074, -540, -537, -536, -269, -268, -267, 0])))
     offset = draw(st.sampled_from([0, 0, 2**40, -(2**51)]))
     steps = st.integers(-4, 4) if draw(st.booleans()) else st.integers(-5000, 5000)

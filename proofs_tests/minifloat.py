@@ -1,9 +1,9 @@
 """The shipped source, run in tiny floating-point formats.
 
 A statement about error-free transforms or filters that holds for every precision can be checked *exhaustively* where
-the precision is three to ten bits. ``derive`` takes the source of the shipped functions, wraps every arithmetic operation
-into a rounding to p bits (half to even, exponents unbounded unless a quantum is given), and returns what it defines.
-The double operation underneath is exact, because tiny operands have tiny sums and products.
+the precision is three to ten bits. ``derive`` takes the source of the shipped functions, wraps every arithmetic
+operation into a rounding to p bits (half to even, exponents unbounded unless a quantum is given), and returns what it
+defines. The double operation underneath is exact, because tiny operands have tiny sums and products.
 """
 
 import ast
@@ -13,7 +13,7 @@ import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numba
 import numpy as np
@@ -25,7 +25,7 @@ from exactkernel.jit import COMPILED
 __all__ = ["Arithmetic", "Backend", "MiniFloat", "all_numbers", "derive", "round_array"]
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-Arithmetic: TypeAlias = Callable[..., object]
+Arithmetic: TypeAlias = Callable[..., Any]  # what the derived source returns, nobody declares
 
 
 class Backend(Enum):
@@ -77,20 +77,25 @@ def _rounded(x: float, precision: int) -> float:
     return x if isinstance(x, int | np.integer) else _round_scalar(x, precision)
 
 
-_round_scalar_compiled = numba.njit(_round_scalar)
+_round_scalar_compiled: Arithmetic = numba.njit(_round_scalar)
 
 
 def _rounded_float(x: float, precision: int) -> float:
-    return _round_scalar_compiled(x, precision)
+    rounded: float = _round_scalar_compiled(x, precision)
+    return rounded
 
 
 def _kept_integer(x: float, precision: int) -> float:  # noqa: ARG001
     return x
 
 
+def _is_float_type(numba_type: object) -> bool:
+    return isinstance(numba_type, numba.types.Float)
+
+
 @overload(_rounded)
 def _rounded_overload(x: float, precision: int) -> Callable[[float, int], float]:  # noqa: ARG001
-    return _rounded_float if isinstance(x, numba.types.Float) else _kept_integer
+    return _rounded_float if _is_float_type(x) else _kept_integer
 
 
 class _Rounding(ast.NodeTransformer):
@@ -99,22 +104,22 @@ class _Rounding(ast.NodeTransformer):
     def __init__(self, backend: Backend) -> None:
         self.arrays = backend is Backend.ARRAYS
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:  # noqa: N802
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         node.decorator_list, node.returns = [], None
         for argument in node.args.args:
             argument.annotation = None
         self.generic_visit(node)
         return node
 
-    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:  # noqa: N802
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
         self.generic_visit(node)
         return ast.Call(ast.Name("fl", ast.Load()), [node], [])
 
-    def visit_AugAssign(self, node: ast.AugAssign) -> ast.stmt:  # noqa: N802
+    def visit_AugAssign(self, node: ast.AugAssign) -> ast.stmt:
         raise_unless_counter(node)
         return node
 
-    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:  # noqa: N802
+    def visit_IfExp(self, node: ast.IfExp) -> ast.expr:
         self.generic_visit(node)
         if not self.arrays:
             return node

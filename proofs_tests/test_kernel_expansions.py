@@ -8,6 +8,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 import pytest
+from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive
 
 from exactkernel.expansions import (
     determinant_2x2,
@@ -23,9 +24,8 @@ from exactkernel.expansions import (
     two_sum,
 )
 from exactkernel.jit import COMPILED
-from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive
 
-FUNCTIONS = [
+FUNCTIONS: list[Arithmetic] = [
     two_sum,
     fast_two_sum,
     split,
@@ -55,7 +55,7 @@ BINADES = 7 if COMPILED else 4
 Lengths = npt.NDArray[np.int64]
 
 
-def in_this_lane(function: Callable[..., object]) -> Arithmetic:
+def in_this_lane(function: Callable[..., int]) -> Arithmetic:
     compiled: Arithmetic = numba.njit(function) if COMPILED else function
     return compiled
 
@@ -70,7 +70,7 @@ lowest_bit = in_this_lane(lowest_bit_of)
 
 def is_nonadjacent(h: Floats, n: int) -> bool:
     """Shewchuk's definition, on integers: no zeros, and between the bits of two neighbours a zero bit at least."""
-    for i in range(n):
+    for i in range(n):  # noqa: SIM110  # numba compiles this, and no generator
         if h[i] == 0.0 or (i > 0 and 2 * int(abs(h[i - 1])) >= lowest_bit(h[i])):
             return False
     return True
@@ -83,7 +83,7 @@ def is_exact_expansion(h: Floats, n: int, exact: float) -> bool:
     total = 0.0  # exact: everything is an integer far below 2^53
     for i in range(n):
         total += h[i]
-    return total == exact and well_formed(h, n)
+    return bool(total == exact and well_formed(h, n))
 
 
 correct = in_this_lane(is_exact_expansion)
@@ -148,12 +148,12 @@ def checkers(mini: MiniFloat, backend: Backend) -> dict[str, Arithmetic]:
 SOUND = checkers(MiniFloat(PRECISION), Backend.LOOPS)
 
 
-@pytest.mark.obligation("K5", "expansion_sum, scale_expansion and expansion_product are exact and nonadjacent")
+@pytest.mark.obligation("K5", "expansion sum, scaling and product are exact and nonadjacent")
 class TestExpansions:
     """The components of a result sum to the exact value and are nonadjacent, hence bit-disjoint.
 
-    Exhaustive: every nonadjacent expansion of up to two (sum, product) or three components of four bits. What is asked of
-    the operands is what holds for the result, so the statement carries over to any sequence of operations.
+    Exhaustive: every nonadjacent expansion of up to two (sum, product) or three components of four bits. What is asked
+    of the operands is what holds for the result, so the statement carries over to any sequence of operations.
     """
 
     def test_sum(self) -> None:

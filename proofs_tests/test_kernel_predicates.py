@@ -1,10 +1,13 @@
 """K7: every predicate, in every form, equals its definition in fractions, for all finite doubles."""
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 import pytest
 from hypothesis import example, given
+from proofs_tests import kernel_oracle as oracle
+from proofs_tests.kernel_strategies import Point, point_tuples
 
 import exactkernel as ek
 from exactkernel.constants import INCIRCLE_BOUND, ORIENT2D_BOUND
@@ -12,8 +15,6 @@ from exactkernel.context import Context, guarded_context, make_context, scaled_i
 from exactkernel.diametral import diametral_adaptive, diametral_filter
 from exactkernel.incircle import incircle_adaptive, incircle_filter, incircle_perturbed_adaptive
 from exactkernel.orient2d import orient2d_adaptive, orient2d_filter
-from proofs_tests import kernel_oracle as oracle
-from proofs_tests.kernel_strategies import Point, point_tuples
 
 U = 2.0**-53
 #: The published filter answers +1 here; the exact sign is -1.
@@ -36,7 +37,9 @@ def in_contexts(adaptive: Callable[..., int], points: tuple[Point, ...]) -> set[
     return {int(adaptive(context, *values)) for context, values in runs}
 
 
-@pytest.mark.obligation("K7", "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles")
+@pytest.mark.obligation(
+    "K7", "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles"
+)
 class TestExactSigns:
     """Scalar, batch, and in a loop with any context: the sign is that of the determinant in fractions."""
 
@@ -86,7 +89,8 @@ class TestExactSigns:
 
 
 F, D, E, R = ek.Stage.FILTER, ek.Stage.DOUBLE_DOUBLE, ek.Stage.EXPANSION, ek.Stage.RATIONAL
-STAGED = [
+Case: TypeAlias = tuple[Callable[..., tuple[ek.Sign, ek.Stage]], Callable[..., int], ek.Stage, tuple[Point, ...]]
+STAGED: list[Case] = [
     (ek.orient2d_staged, oracle.orient2d, F, ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
     (ek.orient2d_staged, oracle.orient2d, D, ((0.1, 0.1), (0.2, 0.2), (0.3, 0.30000000000000004))),
     (ek.orient2d_staged, oracle.orient2d, E, ((0.1, 0.1), (0.2, 0.2), (0.3, 0.3))),
@@ -145,17 +149,17 @@ class TestStages:
         stage: ek.Stage,
         points: tuple[Point, ...],
     ) -> None:
-        adaptive = {
+        adaptives: dict[Callable[..., object], Callable[..., int]] = {
             ek.orient2d_staged: orient2d_adaptive,
             ek.diametral_staged: diametral_adaptive,
             ek.incircle_staged: incircle_adaptive,
-        }[staged]
+        }
         context = guarded_context()
-        assert adaptive(context, *np.ravel(points).tolist()) == exact(*points)
+        assert adaptives[staged](context, *np.ravel(points).tolist()) == exact(*points)
         assert context.counts.sum(axis=0)[stage] == context.counts.sum() == 1
 
     def test_control_the_filter_leaves_what_later_stages_decide(self) -> None:
-        filters = {
+        filters: dict[Callable[..., object], tuple[Callable[..., int], float]] = {
             ek.orient2d_staged: (orient2d_filter, ORIENT2D_BOUND),
             ek.diametral_staged: (diametral_filter, ORIENT2D_BOUND),
             ek.incircle_staged: (incircle_filter, INCIRCLE_BOUND),

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive, round_array
 
 from exactkernel.expansions import fast_two_sum, split, two_diff, two_product, two_sum
-from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive, round_array
 
 PRECISIONS = (3, 4, 5, 7, 8)
 
@@ -23,7 +23,7 @@ def derived(name: str, mini: MiniFloat) -> Arithmetic:
 
 def is_error_free(function: Arithmetic, exact: Floats, a: Floats, b: Floats, precision: int) -> bool:
     """x is the rounded result, y a number of the format, and x + y is the exact result."""
-    x, y = function(a, b)  # type: ignore[misc]  # an Arithmetic returns what its source returns
+    x, y = function(a, b)
     return bool(
         np.array_equal(x, round_array(exact, precision))
         and np.array_equal(y, round_array(y, precision))
@@ -84,7 +84,7 @@ class TestProduct:
 
     @staticmethod
     def halves_are_short(mini: MiniFloat, a: Floats) -> bool:
-        high, low = derived("split", mini)(a)  # type: ignore[misc]  # an Arithmetic returns what its source returns
+        high, low = derived("split", mini)(a)
         half = mini.precision // 2
         return bool(
             np.array_equal(high + low, a)
@@ -137,7 +137,7 @@ class TestMiniFloat:
         over_arrays = derive([two_sum], MiniFloat(3), Backend.ARRAYS)["two_sum"](a, b)
         scalar = derive([two_sum], MiniFloat(3), Backend.PYTHON)["two_sum"]
         one_by_one = [scalar(x, y) for x, y in zip(a.tolist(), b.tolist(), strict=True)]
-        assert np.array_equal(np.transpose(over_arrays), np.array(one_by_one))  # type: ignore[call-overload]  # a tuple
+        assert np.array_equal(np.transpose(over_arrays), np.array(one_by_one))
 
     def test_quantum_is_gradual_underflow(self) -> None:
         x = np.array([0.75, 1.25, 2.5, 3.5, 5.0])

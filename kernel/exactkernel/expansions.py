@@ -1,8 +1,8 @@
 """Error-free transforms and expansion arithmetic.
 
-An expansion is a sum of doubles, stored in an array by increasing magnitude, nonadjacent (between the bits of any two is
-a zero bit), without zeros (the number zero has no components); its last component carries its sign. The routines return the number of components written.
-Reference [Shewchuk 1997], [Dekker 1971], [Knuth 1969].
+An expansion is a sum of doubles, stored in an array by increasing magnitude, nonadjacent (between the bits of any two
+is a zero bit), without zeros (the number zero has no components); its last component carries its sign. The routines
+return the number of components written. Reference [Shewchuk 1997], [Dekker 1971], [Knuth 1969].
 """
 
 from exactkernel.constants import SPLITTER
