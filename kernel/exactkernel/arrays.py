@@ -4,10 +4,10 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.coordinates import doubles_of
-from exactkernel.errors import CoordinateError, NonFiniteError, ShapeError
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.errors import CoordinateError, NonFiniteError, ShapeError, shown
+from exactkernel.types import Coordinate, FloatArray, IntArray
 
-__all__ = ["exact_doubles", "finite_points", "vertex_indices"]
+__all__ = ["exact_doubles", "finite_points", "unrounded_array", "vertex_indices"]
 
 _NAMED = 5  # culprits that a message spells out
 
@@ -17,17 +17,40 @@ def _culprits(rows: npt.NDArray[np.intp], name: str) -> str:
     return shown if rows.size <= _NAMED else f"{shown} and {rows.size - _NAMED} more"
 
 
+def unrounded_array(points: npt.ArrayLike, name: str) -> npt.NDArray[np.generic]:
+    """Return points as an array, of objects where numpy would round.
+
+    Raises:
+        ShapeError: the rows differ in length.
+    """
+    try:
+        array = np.asarray(points)
+        if array.dtype == np.float64 and not isinstance(points, np.ndarray) and np.any(abs(array) >= 2.0**53):
+            array = np.asarray(points, dtype=object)  # among floats, numpy has rounded the integers
+    except ValueError as error:  # ragged
+        raise ShapeError(f"{name} is not an array of shape (n, 2): {error}") from None
+    return array
+
+
+def _is_kept(array: npt.NDArray[np.generic], doubles: FloatArray) -> npt.NDArray[np.bool_]:
+    """Tell which numbers are doubles, by the way there and back."""
+    within = np.ones(doubles.shape, np.bool_)
+    if array.dtype.kind != "f":  # the cast back of what rounded up to 2^63 or 2^64 is undefined
+        within = doubles < 2.0 ** (8 * array.dtype.itemsize - (array.dtype.kind == "i"))
+    back = np.where(within, doubles, 0.0).astype(array.dtype)
+    kept: npt.NDArray[np.bool_] = np.equal(back, array) | np.isnan(doubles)
+    return within & kept
+
+
 def exact_doubles(points: npt.ArrayLike, name: str = "points") -> FloatArray:
     """Return points as a C-contiguous float64 array (n, 2); NaN and infinity pass.
 
     Raises:
         ShapeError: the shape is not (n, 2).
-        CoordinateError: the dtype is not numeric, or a value is not exactly a double (an integer beyond 2^53, say).
+        CoordinateError: the dtype is not numeric, or a value is not exactly a double (an integer beyond 2^53,
+        say).
     """
-    try:
-        array = np.asarray(points)
-    except ValueError as error:  # ragged
-        raise ShapeError(f"{name} is not an array of shape (n, 2): {error}") from None
+    array = unrounded_array(points, name)
     if array.ndim != 2 or array.shape[1] != 2:
         raise ShapeError(f"{name} has shape {array.shape}; expected (n, 2)")
     if array.dtype == np.float64:
@@ -38,8 +61,7 @@ def exact_doubles(points: npt.ArrayLike, name: str = "points") -> FloatArray:
         raise CoordinateError(f"{name} has dtype {array.dtype}; expected float64")
     with np.errstate(over="ignore", invalid="ignore"):
         doubles = np.ascontiguousarray(array, dtype=np.float64)
-        kept = (doubles.astype(array.dtype) == array) | (array != array)
-    rounded = np.flatnonzero(~kept.all(axis=1))
+        rounded = np.flatnonzero(~_is_kept(array, doubles).all(axis=1))
     if rounded.size:
         raise CoordinateError(
             f"{_culprits(rounded, name)}: {array[rounded[0]].tolist()} would be rounded to a double; "
@@ -49,19 +71,23 @@ def exact_doubles(points: npt.ArrayLike, name: str = "points") -> FloatArray:
     return doubles
 
 
-def _doubles_of_objects(array: npt.NDArray[np.object_], name: str) -> FloatArray:
+def _doubles_of_objects(array: npt.NDArray[np.generic], name: str) -> FloatArray:
     doubles = np.empty(array.shape, dtype=np.float64)
     for i, (x, y) in enumerate(array.tolist()):
-        try:
-            exact = doubles_of((x, y))
-        except NonFiniteError:
-            exact = [float(x), float(y)]
-        except CoordinateError as error:
-            raise CoordinateError(f"{name}[{i}]: {error}", indices=[i]) from None
-        if exact is None:
-            raise CoordinateError(f"{name}[{i}]: {(x, y)!r} would be rounded to a double", indices=[i])
-        doubles[i] = exact
+        doubles[i] = _double_or_non_finite(x, i, name), _double_or_non_finite(y, i, name)
     return doubles
+
+
+def _double_or_non_finite(value: Coordinate, i: int, name: str) -> float:
+    try:
+        exact = doubles_of((value, 0))
+    except NonFiniteError:
+        return float(value)
+    except CoordinateError as error:
+        raise CoordinateError(f"{name}[{i}]: {error}", indices=[i]) from None
+    if exact is None:
+        raise CoordinateError(f"{name}[{i}]: {shown(value)} would be rounded to a double", indices=[i])
+    return exact[0]
 
 
 def finite_points(points: npt.ArrayLike, name: str = "points") -> FloatArray:

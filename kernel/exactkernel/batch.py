@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.arrays import finite_points
+from exactkernel.arrays import finite_points, unrounded_array
 from exactkernel.context import Context, make_context
 from exactkernel.diametral import diametral_adaptive
 from exactkernel.errors import ShapeError
@@ -42,7 +42,7 @@ def _broadcast(**operands: npt.ArrayLike) -> tuple[list[FloatArray], Context]:
     """Check the operands, broadcast them to one length, and find the window of all of them together."""
     rows: list[FloatArray] = []
     for name, operand in operands.items():
-        array = np.asarray(operand)
+        array = unrounded_array(operand, name)
         if array.ndim not in (1, 2) or array.shape[-1] != 2:
             raise ShapeError(f"{name} has shape {array.shape}; expected (n, 2) or (2,)")
         rows.append(finite_points(array.reshape(-1, 2), name))

@@ -42,28 +42,28 @@ ORIENT2D_BOUND: Final = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF
 INCIRCLE_BOUND: Final = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF
 
 #: The double-double determinants. The differences are exact pairs; a product of pairs errs by at most 7u^2 relative to
-#: its value and a sum by at most 3u^2 relative to the sum of the absolute values [Joldes 2017]. orient2d: 7 + 3 = 10 u^2.
-#: incircle: squares 7, lift 10, cross product 10, product 10 + 10 + 7 = 27, the sum of three 33 u^2 times the permanent.
-#: 64 u^2 leaves half of itself for third-order terms and for the rounding of the permanent and of the bound.
+#: its value and a sum by at most 3u^2 relative to the sum of the absolute values [Joldes 2017]. orient2d: 7 + 3 = 10
+#: u^2. incircle: squares 7, lift 10, cross product 10, product 10 + 10 + 7 = 27, the sum of three 33 u^2 times the
+#: permanent. 64 u^2 leaves half of itself for third-order terms and for the rounding of the permanent and of the bound.
 DD_BOUND: Final = 64.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF
 
-#: On a grid with unit g, differences below 2^12 g make every intermediate value of the incircle determinant an integer
-#: multiple of g^4 (g^2 for orient2d): lift < 2^25, cross product < 2^25, their product < 2^50, three of them < 2^52.
+#: On a grid with unit g, differences of at most 2^12 g make every intermediate value of the incircle determinant an
+#: integer multiple of g^4 (g^2 for orient2d): lift and cross product <= 2^25, their product <= 2^50, three < 2^52.
 #: Integers below 2^53 are doubles, so nothing rounds and the computed determinant is exact, zero included.
 GRID_STEPS: Final = 2.0**12
 
 # The windows. When every coordinate is a multiple of a power of two g, so is every difference, head or tail, and a
-# determinant of degree k is made of multiples of g^k. While g^k >= 2^-1074, the smallest subnormal, those are doubles or
-# round with relative error u: nothing underflows, in the filter and in the expansions alike (Dekker's product of a and b
-# is exact because its tail is a multiple of ulp(a) ulp(b)). The bound C p^ may itself round to a subnormal; det, being a
-# multiple of g^k, still exceeds it only if it exceeds the exact C p^.
+# determinant of degree k is made of multiples of g^k. While g^k >= 2^-1074, the smallest subnormal, those are doubles
+# or round with relative error u: nothing underflows, in the filter and in the expansions alike (Dekker's product of a
+# and b is exact because its tail is a multiple of ulp(a) ulp(b)). The bound C p^ may itself round to a subnormal; det,
+# being a multiple of g^k, still exceeds it only if it exceeds the exact C p^.
 MIN_UNIT_DEGREE_2: Final = 2.0**-537
 MIN_UNIT_DEGREE_4: Final = 2.0**-268
 # A nonzero double of magnitude at least 2^52 g is a multiple of g, whatever its bits.
 MIN_COORDINATE_DEGREE_2: Final = 2.0**-485
 MIN_COORDINATE_DEGREE_4: Final = 2.0**-216
-# Above: coordinates of magnitude at most 2^M have differences of at most 2^(M+1). Degree 2: products 2^(2M+2), their sum
-# 2^(2M+3), and an expansion's partial sums stay below twice that: 2M + 4 <= 1023. Degree 4: lift and cross product
+# Above: coordinates of magnitude at most 2^M have differences of at most 2^(M+1). Degree 2: products 2^(2M+2), their
+# sum 2^(2M+3), and an expansion's partial sums stay below twice that: 2M + 4 <= 1023. Degree 4: lift and cross product
 # 2^(2M+3), product 2^(4M+6), the sum of three below 2^(4M+8), twice that 2^(4M+9): 4M + 9 <= 1023. Veltkamp's split
 # multiplies by 2^27 + 1 before it subtracts; the largest number split is a factor, below 2^(2M+4), which leaves room.
 MAX_COORDINATE_DEGREE_2: Final = 2.0**509

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from gmpy2 import mpq
 
-from exactkernel.coordinates import rationals_of
-from exactkernel.errors import DegenerateError
+from exactkernel.coordinates import rational_value, rationals_of
+from exactkernel.errors import DegenerateError, shown
 from exactkernel.rational import RationalPoint
-from exactkernel.types import PointLike
+from exactkernel.types import Coordinate, PointLike
 
 __all__ = ["RoundedPoint", "circumcentre", "point_on_segment", "rounded", "segment_crossing"]
 
@@ -46,7 +46,7 @@ def circumcentre(a: PointLike, b: PointLike, c: PointLike) -> RationalPoint:
     ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
     twice_area = ux * vy - uy * vx
     if twice_area == 0:
-        raise DegenerateError(f"the points {a!r}, {b!r}, {c!r} lie on one line and have no circumcentre")
+        raise DegenerateError(f"the points {shown(a)}, {shown(b)}, {shown(c)} lie on one line and have no circumcentre")
     u, v = ux * ux + uy * uy, vx * vx + vy * vy
     return ax + (vy * u - uy * v) / (2 * twice_area), ay + (ux * v - vx * u) / (2 * twice_area)
 
@@ -55,8 +55,8 @@ def segment_crossing(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> 
     """Return the exact point in which the closed segments ab and cd meet.
 
     Raises:
-        DegenerateError: they are parallel (so they meet nowhere, or in more than a point), or they do not meet.
-        NonFiniteError, CoordinateError, ShapeError: as for orient2d.
+        DegenerateError: they are parallel (so they meet nowhere, or in more than a point), or they do not
+        meet. NonFiniteError, CoordinateError, ShapeError: as for orient2d.
 
     >>> from exactkernel import segment_crossing
     >>> segment_crossing((0, 0), (1, 1), (0, 1), (2, 0))
@@ -66,16 +66,19 @@ def segment_crossing(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> 
     ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
     cross = ux * vy - uy * vx
     if cross == 0:
-        raise DegenerateError(f"the segments {a!r}-{b!r} and {c!r}-{d!r} are parallel")
+        raise DegenerateError(f"the segments {shown(a)}-{shown(b)} and {shown(c)}-{shown(d)} are parallel")
     s = ((cx - ax) * vy - (cy - ay) * vx) / cross
     t = ((cx - ax) * uy - (cy - ay) * ux) / cross
     if not (0 <= s <= 1 and 0 <= t <= 1):
-        raise DegenerateError(f"the segments {a!r}-{b!r} and {c!r}-{d!r} do not meet")
+        raise DegenerateError(f"the segments {shown(a)}-{shown(b)} and {shown(c)}-{shown(d)} do not meet")
     return ax + s * ux, ay + s * uy
 
 
-def point_on_segment(a: PointLike, b: PointLike, t: mpq) -> RationalPoint:
-    """Return the exact point a + t (b - a).
+def point_on_segment(a: PointLike, b: PointLike, t: Coordinate) -> RationalPoint:
+    """Return the exact point a + t (b - a), for any exact number or finite double t.
+
+    Raises:
+        NonFiniteError, CoordinateError, ShapeError: as for orient2d, and for t.
 
     >>> from gmpy2 import mpq
     >>> from exactkernel import point_on_segment
@@ -83,15 +86,16 @@ def point_on_segment(a: PointLike, b: PointLike, t: mpq) -> RationalPoint:
     (mpq(1,1), mpq(1,3))
     """
     (ax, ay), (bx, by) = rationals_of(a, b)
-    return ax + t * (bx - ax), ay + t * (by - ay)
+    s = rational_value(t)
+    return ax + s * (bx - ax), ay + s * (by - ay)
 
 
 def _nearest(value: mpq) -> float:
-    """Return the double nearest to the rational; Python's integer division rounds correctly, subnormals included."""
+    """Return the nearest double; Python's integer division rounds correctly, subnormals included."""
     try:
         return int(value.numerator) / int(value.denominator)
     except OverflowError:
-        raise DegenerateError(f"the coordinate {float(value):.3g} is beyond the doubles") from None
+        raise DegenerateError(f"the coordinate {shown(value)} is beyond the doubles") from None
 
 
 def rounded(point: RationalPoint) -> RoundedPoint:

@@ -41,6 +41,7 @@ class Context(NamedTuple):
         incircle_bound: ``INCIRCLE_BOUND``, or infinity where they leave the window of degree 4.
         grid_limit: differences up to this make double determinants exact; 0 where no common grid is known.
         scratch: workspace of the expansions.
+        mailbox: int64 (2,): the number of the last question to the rational stage, and its answer.
         counts: int64 (2, 5): how often each :class:`Stage` decided orient2d and incircle.
     """
 
@@ -49,6 +50,7 @@ class Context(NamedTuple):
     grid_limit: float
     scratch: FloatArray
     counts: npt.NDArray[np.int64]
+    mailbox: npt.NDArray[np.int64]
 
 
 @jit
@@ -68,13 +70,13 @@ def scan(coordinates: FloatArray) -> tuple[float, float]:
     maximum = 0.0
     unit = math.inf
     for x in coordinates:
-        magnitude = abs(x)
+        magnitude = abs(float(x))
         if magnitude == 0.0:
             continue
         maximum = max(maximum, magnitude)
         steps = magnitude / unit
         if magnitude < unit or steps != np.floor(steps):  # a quotient that overflows is a multiple all the same
-            unit = lowest_bit(x)
+            unit = lowest_bit(magnitude)
     return maximum, unit
 
 
@@ -93,6 +95,7 @@ def _context(maximum: float, unit: float) -> Context:
         grid_limit=min(unit, constants.MAX_COORDINATE_DEGREE_4) * constants.GRID_STEPS if degree_4 else 0.0,
         scratch=np.empty(SCRATCH_SIZE, dtype=np.float64),
         counts=np.zeros((2, 5), dtype=np.int64),
+        mailbox=np.zeros(2, dtype=np.int64),
     )
 
 
@@ -103,7 +106,7 @@ def make_context(coordinates: FloatArray) -> Context:
 
 def guarded_context() -> Context:
     """Return a context that assumes nothing: every call looks at its own coordinates."""
-    return Context(math.inf, math.inf, 0.0, np.empty(SCRATCH_SIZE), np.zeros((2, 5), dtype=np.int64))
+    return _context(math.inf, 0.0)
 
 
 def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:

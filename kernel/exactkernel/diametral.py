@@ -34,10 +34,7 @@ def diametral_slow(c: Context, ax: float, ay: float, bx: float, by: float, px: f
             safe_degree_2(ax) and safe_degree_2(ay) and safe_degree_2(bx)
             and safe_degree_2(by) and safe_degree_2(px) and safe_degree_2(py)
         ):  # fmt: skip
-            answer = 0
-            while answer == 0:  # 0: the callback was interrupted before it could answer
-                answer = diametral_from_doubles(ax, ay, bx, by, px, py)
-            return RATIONAL + (answer - 2)
+            return RATIONAL + diametral_from_doubles(c.mailbox, ax, ay, bx, by, px, py)
         sign = diametral_filter(ORIENT2D_BOUND, ax, ay, bx, by, px, py)
         if sign != 0:
             return FILTER + sign

@@ -2,7 +2,18 @@
 
 from collections.abc import Sequence
 
-__all__ = ["CoordinateError", "DegenerateError", "ExactMeshError", "NonFiniteError", "ShapeError"]
+__all__ = ["CoordinateError", "DegenerateError", "ExactMeshError", "NonFiniteError", "ShapeError", "shown"]
+
+_LONGEST = 120
+
+
+def shown(value: object) -> str:
+    """Return the repr of an argument, cut where it is long; Python refuses integers of 4300 digits."""
+    try:
+        text = repr(value)
+    except ValueError:
+        return f"<{type(value).__name__} with too many digits to print>"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 20]}...{text[-17:]}"
 
 
 class ExactMeshError(ValueError):

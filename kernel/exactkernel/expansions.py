@@ -1,8 +1,8 @@
 """Error-free transforms and expansion arithmetic.
 
-An expansion is a sum of doubles, stored in an array by increasing magnitude, nonoverlapping, without zeros (the number
-zero has no components); its last component carries its sign. The routines return the number of components written.
-Reference [Shewchuk 1997], [Dekker 1971], [Knuth 1969].
+An expansion is a sum of doubles, stored in an array by increasing magnitude, nonadjacent (between the bits of any two
+is a zero bit), without zeros (the number zero has no components); its last component carries its sign. The routines
+return the number of components written. Reference [Shewchuk 1997], [Dekker 1971], [Knuth 1969].
 """
 
 from exactkernel.constants import SPLITTER
@@ -70,7 +70,7 @@ def two_product(a: float, b: float) -> tuple[float, float]:
 
 @jit
 def pair(high: float, low: float, h: FloatArray) -> int:
-    """Write the nonoverlapping sum high + low as an expansion."""
+    """Write the nonadjacent sum high + low (of two_sum, two_diff or two_product) as an expansion."""
     n = 0
     if low != 0.0:
         h[n] = low
@@ -83,7 +83,11 @@ def pair(high: float, low: float, h: FloatArray) -> int:
 
 @jit
 def expansion_sum(e: FloatArray, ne: int, f: FloatArray, nf: int, h: FloatArray) -> int:
-    """Write e + f into h (not overlapping e or f in memory): merge by magnitude, then carry. O(ne + nf)."""
+    """Write e + f into h (not overlapping e or f in memory): merge by magnitude, then carry. O(ne + nf).
+
+    Shewchuk's linear sum: where e and f are nonadjacent, so is h. His fast sum saves three operations of nine, but does
+    not keep any property that it asks for: 192 - 24 and -240, in four bits, become 8 - 80.
+    """
     if ne == 0 or nf == 0:
         for k in range(ne):
             h[k] = e[k]
@@ -91,25 +95,20 @@ def expansion_sum(e: FloatArray, ne: int, f: FloatArray, nf: int, h: FloatArray)
             h[k] = f[k]
         return ne + nf
     i = j = n = 0
-    carry = 0.0
-    for k in range(ne + nf):
+    carry = small = 0.0
+    for _ in range(ne + nf):
         if j == nf or (i < ne and abs(e[i]) < abs(f[j])):
             component = e[i]
             i += 1
         else:
             component = f[j]
             j += 1
-        if k == 0:
-            carry = component
-            continue
-        carry, tail = two_sum(carry, component)
+        total, tail = fast_two_sum(component, small)
         if tail != 0.0:
             h[n] = tail
             n += 1
-    if carry != 0.0:
-        h[n] = carry
-        n += 1
-    return n
+        carry, small = two_sum(carry, total)
+    return n + pair(carry, small, h[n:])
 
 
 @jit

@@ -161,10 +161,7 @@ def incircle_slow(
             safe_degree_4(ax) and safe_degree_4(ay) and safe_degree_4(bx) and safe_degree_4(by)
             and safe_degree_4(cx) and safe_degree_4(cy) and safe_degree_4(dx) and safe_degree_4(dy)
         ):  # fmt: skip
-            answer = 0
-            while answer == 0:  # 0: the callback was interrupted before it could answer
-                answer = incircle_from_doubles(ax, ay, bx, by, cx, cy, dx, dy)
-            return RATIONAL + (answer - 2)
+            return RATIONAL + incircle_from_doubles(k.mailbox, ax, ay, bx, by, cx, cy, dx, dy)
         sign = incircle_filter(INCIRCLE_BOUND, ax, ay, bx, by, cx, cy, dx, dy)
         if sign != 0:
             return FILTER + sign
@@ -337,8 +334,8 @@ def _perturbed_rational(points: list[RationalPoint]) -> int:
 def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> Sign:
     """Return :func:`incircle` with ties broken, so that the Delaunay triangulation is unique.
 
-    Every point is lifted by an infinitesimal of its own, the lexicographically smallest point by the largest. The answer
-    is ZERO only where two points coincide or all four lie on one line. Arguments and errors as for incircle.
+    Every point is lifted by an infinitesimal of its own, the lexicographically smallest point by the largest. The
+    answer is ZERO only where two points coincide or all four lie on one line. Arguments and errors as for incircle.
 
     Reference [Edelsbrunner 1990], [Devillers 2011].
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
+import numpy as np
 from numba.core import config as _numba_config
 
 #: numba's settings; their names are made at run time, out of reach of a type checker.
@@ -29,16 +30,17 @@ R = TypeVar("R")
 #: False under ``NUMBA_DISABLE_JIT=1``: the same source runs interpreted, for coverage, mutation testing and stepping.
 COMPILED: bool = not _config.DISABLE_JIT
 
+if not COMPILED:  # numpy's scalars warn of an overflow to infinity, which machine code lets pass, as the filters expect
+    np.seterr(over="ignore", invalid="ignore")
+
 _UNUSED_AFTER_SECONDS = 30 * 24 * 3600
 
 
 def _sources() -> list[Path]:
-    """Every source file of the two packages that stand side by side with this one (exactmesh may be elsewhere)."""
+    """Return every source file of the two packages, as far as they stand side by side."""
     kernel = Path(__file__).resolve().parent
-    roots = [kernel]
-    for folder in (kernel.parent / "exactmesh", kernel.parent.parent / "mesh" / "exactmesh"):
-        if folder.is_dir():
-            roots.append(folder)
+    meshes = (kernel.parent / "exactmesh", kernel.parent.parent / "mesh" / "exactmesh")
+    roots = [kernel, *(folder for folder in meshes if folder.is_dir())]
     return sorted(path for root in roots for path in root.rglob("*.py"))
 
 
@@ -50,36 +52,46 @@ def _stamp() -> str:
     return digest.hexdigest()[:16]
 
 
-def _writable_base() -> Path:
-    """The user's cache folder; the temporary folder where that cannot be written."""
-    if os.environ.get("NUMBA_CACHE_DIR"):
-        candidates = [Path(os.environ["NUMBA_CACHE_DIR"])]
-    else:
-        home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-        candidates = [Path(home) / "exactmesh"]
+def _bases() -> list[Path]:
+    """Where the cache may live, best first: the user's cache folder, then the temporary folder."""
     user = os.getuid() if hasattr(os, "getuid") else "user"
-    candidates.append(Path(tempfile.gettempdir()) / f"exactmesh-{user}")
-    for base in candidates:
-        try:
-            base.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(base, os.W_OK):
-            return base
-    return Path(tempfile.mkdtemp(prefix="exactmesh-"))
+    temporary = Path(tempfile.gettempdir()) / f"exactmesh-{user}"
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(os.environ["NUMBA_CACHE_DIR"]), temporary]
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return [Path(home) / "exactmesh", temporary]
+
+
+def _is_foreign(folder: Path) -> bool:
+    """Tell whether another user could have put machine code into the folder."""
+    return hasattr(os, "getuid") and folder.stat().st_uid not in (os.getuid(), 0)
+
+
+def _remove_unused(base: Path) -> None:
+    """Remove what earlier versions left behind."""
+    for other in base.iterdir():
+        marker = other / "used"
+        if marker.exists() and time.time() - marker.stat().st_mtime > _UNUSED_AFTER_SECONDS:
+            shutil.rmtree(other, ignore_errors=True)
 
 
 def _open_cache() -> Path:
-    base = _writable_base()
-    folder = base / _stamp()
-    if not folder.exists():
-        folder.mkdir(exist_ok=True)
-        for other in base.iterdir():  # what earlier versions left behind
-            marker = other / "used"
-            if marker.exists() and time.time() - marker.stat().st_mtime > _UNUSED_AFTER_SECONDS:
-                shutil.rmtree(other, ignore_errors=True)
-    (folder / "used").touch()
-    return folder
+    """Return a writable folder of this version's own; a temporary one where nothing else can be written."""
+    stamp = _stamp()
+    for base in _bases():
+        folder = base / stamp
+        try:
+            new = not folder.exists()
+            folder.mkdir(parents=True, exist_ok=True)
+            if _is_foreign(folder):
+                continue
+            (folder / "used").touch()
+            if new:
+                _remove_unused(base)
+        except OSError:  # read-only, full, or cleared by another process in this moment
+            continue
+        return folder
+    return Path(tempfile.mkdtemp(prefix="exactmesh-"))
 
 
 _CACHE: Path | None = _open_cache() if COMPILED else None
@@ -121,5 +133,5 @@ def jit(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def jit_inline(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile as :func:`jit` does, and copy the code to each place of call: for the filters, which are short and hot."""
+    """Compile as :func:`jit` does, and copy the code to each place of call: for the short, hot filters."""
     return _compile(function, always_inline=True)

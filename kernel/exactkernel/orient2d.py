@@ -1,4 +1,4 @@
-"""orient2d: do three points turn left, turn right, or lie on a line? Filter, grid, double-double, expansion, rational."""
+"""orient2d: do three points turn left, turn right, or lie on a line?"""
 
 import math
 
@@ -71,10 +71,7 @@ def orient2d_slow(c: Context, ax: float, ay: float, bx: float, by: float, cx: fl
             safe_degree_2(ax) and safe_degree_2(ay) and safe_degree_2(bx)
             and safe_degree_2(by) and safe_degree_2(cx) and safe_degree_2(cy)
         ):  # fmt: skip
-            answer = 0
-            while answer == 0:  # 0: the callback was interrupted before it could answer
-                answer = orient2d_from_doubles(ax, ay, bx, by, cx, cy)
-            return RATIONAL + (answer - 2)
+            return RATIONAL + orient2d_from_doubles(c.mailbox, ax, ay, bx, by, cx, cy)
         sign = orient2d_filter(ORIENT2D_BOUND, ax, ay, bx, by, cx, cy)
         if sign != 0:
             return FILTER + sign
