@@ -45,7 +45,7 @@ def orient(k: Context, xy: FloatArray, a: int, b: int, c: int) -> int:
     return orient2d_adaptive(k, xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], xy[2 * c], xy[2 * c + 1])
 
 
-@jit
+@jit_inline
 def in_conflict(k: Context, xy: FloatArray, ghost: int, a: int, b: int, c: int, p: int) -> bool:
     """Tell whether p lies in the (perturbed) circumdisk of the counterclockwise triangle a, b, c, ghost or not."""
     if a == ghost:
@@ -59,7 +59,7 @@ def in_conflict(k: Context, xy: FloatArray, ghost: int, a: int, b: int, c: int, 
     return incircle_perturbed_adaptive(k, ax, ay, bx, by, cx, cy, px, py) > 0
 
 
-@jit
+@jit_inline
 def locate(
     k: Context, xy: FloatArray, ring: EdgeArray, org: EdgeArray, ghost: int, start: int, p: int
 ) -> tuple[int, int]:
@@ -95,7 +95,7 @@ def locate(
         return (g, 1) if side_g == 0 else (e, 0)
 
 
-@jit
+@jit_inline
 def legalize(k: Context, xy: FloatArray, ring: EdgeArray, org: EdgeArray, ghost: int, first: int, p: int) -> int:
     """Flip the edges of p's link, from the edge first on counterclockwise, until none is in conflict with p.
 
@@ -284,10 +284,10 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
     if edges == 0:
         _refuse_flat(given)
     kept, vertex, representative = _number_vertices(order, twin)
-    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), ghost=len(order))
+    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), vertex)
     return Triangulation(
         points=given.take(kept, axis=0),
-        triangles=vertex.take(triangles),
+        triangles=triangles,
         neighbors=neighbors,
         representative=representative,
         work=work_of(k, flips),

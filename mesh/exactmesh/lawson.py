@@ -170,11 +170,12 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
         flips += int(more)
         raise_if_interrupted()
     slot = np.where(face.reshape(-1, 2)[:, ::-1].reshape(-1) == OUTSIDE, OUTER, -1).astype(np.int32)
-    found, neighbors = triangles_of(ring, org, slot)
+    same = np.arange(len(given), dtype=np.int32)
+    found, neighbors = triangles_of(ring, org, slot, same)
     return Triangulation(
         points=given,
         triangles=found,
         neighbors=neighbors,
-        representative=np.arange(len(given), dtype=np.int32),
+        representative=same,
         work=work_of(k, flips),
     )

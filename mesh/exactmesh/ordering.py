@@ -16,8 +16,8 @@ __all__ = ["IndexArray", "insertion_order"]
 UInt64Array = npt.NDArray[np.uint64]
 IndexArray = npt.NDArray[np.int64]
 
-_FIRST_ROUND = 1 << 10  # about so many points, at least, make the first round
-_ROUND_BITS = 3  # a round holds 7/8 of the points that are left for it and the rounds before
+_FIRST_ROUND = 1 << 7  # about so many points, at least, make the first round
+_ROUND_BITS = 4  # a round holds 15/16 of the points that are left for it and the rounds before
 _RUN = 32  # so many points in one cell are worth a finer curve of their own
 _SIDE_BITS = 18  # at most 2^18 cells a side
 _TINY = 2.0**-1074  # the extent of a single point
@@ -86,7 +86,7 @@ def _pack_keys(
 
 
 def _rounds(n: int, seed: int) -> IndexArray:
-    """Return the BRIO round of each point: the last has 7/8 of all, the one before 7/8 of the rest, and so on."""
+    """Return the BRIO round of each point: the last has 15/16 of all, the one before 15/16 of the rest, and so on."""
     rounds = max(0, (n // _FIRST_ROUND).bit_length() - 1) // _ROUND_BITS
     coins = np.random.default_rng(seed).random(n, dtype=np.float32)
     group = np.full(n, rounds, dtype=np.int64)

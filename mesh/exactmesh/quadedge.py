@@ -298,7 +298,9 @@ class QuadEdge:
         after[~live] = 0
         triangular = after[after[after >> 1] >> 1] == 2 * half
         wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
-        return triangles_of(self._ring, self._vertex, np.where(wanted, -1, OUTER).astype(np.int32))[0]
+        slot = np.where(wanted, -1, OUTER).astype(np.int32)
+        same = np.arange(self._vertex.max(initial=0) + 1, dtype=np.int32)
+        return triangles_of(self._ring, self._vertex, slot, same)[0]
 
     def __len__(self) -> int:
         """Return the number of edges (each with its four quarter-edges)."""
