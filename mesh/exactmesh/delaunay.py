@@ -74,20 +74,22 @@ def locate(
         e, side = e ^ 2, 1
     elif side == 0 and dest(org, left_next(ring, e)) == ghost:
         e = e ^ 2
+    lean = True  # the walk tends to leave triangle after triangle on the same side: that one is tested first
     while True:
         f = left_next(ring, e)
-        apex = dest(org, f)
-        if apex == ghost:
+        if dest(org, f) == ghost:
             return e, 0
-        side_f = orient(k, xy, origin(org, f), apex, p)
-        if side_f < 0:
-            e, side = f ^ 2, 1
-            continue
         g = left_next(ring, f)
-        side_g = orient(k, xy, apex, origin(org, e), p)
-        if side_g < 0:
-            e, side = g ^ 2, 1
+        near, far = (f, g) if lean else (g, f)
+        side_near = orient(k, xy, origin(org, near), dest(org, near), p)
+        if side_near < 0:
+            e, side = near ^ 2, 1
             continue
+        side_far = orient(k, xy, origin(org, far), dest(org, far), p)
+        if side_far < 0:
+            e, side, lean = far ^ 2, 1, not lean
+            continue
+        side_f, side_g = (side_near, side_far) if lean else (side_far, side_near)
         if side == 0:
             return (e, 2) if side_g == 0 else ((f, 2) if side_f == 0 else (e, 1))
         if side_f == 0:

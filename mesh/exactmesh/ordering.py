@@ -103,47 +103,53 @@ def _boxes(xy: FloatArray, starts: IndexArray) -> tuple[FloatArray, FloatArray]:
     return np.stack(low, axis=1), np.maximum(*extents)
 
 
-def _crowded_runs(cell: UInt64Array) -> tuple[IndexArray, IndexArray]:
-    """Return the starts and lengths of the runs of more than _RUN equal cells."""
-    bounds = np.concatenate(([0], np.flatnonzero(cell[1:] != cell[:-1]) + 1, [len(cell)]))
+def _along_curves(
+    xy: FloatArray, group: IndexArray, low: FloatArray, extent: FloatArray
+) -> tuple[IndexArray, IndexArray, IndexArray]:
+    """Sort the points by group, and along a curve in the box of each group.
+
+    Returns the order, and the starts and lengths of the runs in it that crowd one cell.
+    """
+    index_bits, group_bits = len(xy).bit_length(), len(extent).bit_length()
+    side_bits = min(_SIDE_BITS, (63 - index_bits - group_bits) // 2 // _LEVELS * _LEVELS)
+    keys = np.empty(len(xy), dtype=np.uint64)
+    _pack_keys(xy, group, low, np.maximum(extent, _TINY), side_bits, index_bits, _TABLE, keys)
+    keys.sort()
+    order = (keys & np.uint64((1 << index_bits) - 1)).view(np.int64)
+    keys >>= np.uint64(index_bits)
+    bounds = np.concatenate(([0], np.flatnonzero(keys[1:] != keys[:-1]) + 1, [len(keys)]))
     lengths = np.diff(bounds)
     crowded = np.flatnonzero(lengths > _RUN)
-    return bounds[crowded], lengths[crowded]
+    return order, bounds[crowded], lengths[crowded]
 
 
 def insertion_order(xy: FloatArray, seed: int) -> IndexArray:
     """Return the indices of the points, float64 (n, 2), in the order in which to insert them. O(n log n).
 
-    Points that crowd one cell of the curve are sorted again, along a curve in their own bounding box: each level divides
-    the box by 2^15 at least, so a few levels reach any cluster, and some hundred any doubles.
+    Points that crowd one cell are sorted again, along a curve in their own bounding box: each level divides the box by
+    2^12 at least, so a few levels reach any cluster, and some hundred any doubles.
 
     >>> import numpy as np
     >>> from exactmesh.ordering import insertion_order
     >>> insertion_order(np.array([[0.0, 0.0], [1.0, 0.0], [0.1, 0.9], [1.0, 1.0]]), seed=0).tolist()
     [0, 2, 3, 1]
     """
-    order = np.arange(len(xy), dtype=np.int64)
-    positions, group = order.copy(), _rounds(len(xy), seed)
+    group = _rounds(len(xy), seed)
     rounds = int(group.max()) + 1
-    low, extent = (np.repeat(bound, rounds, axis=0) for bound in _boxes(xy, order[:1]))
-    local = xy
-    while len(positions):
-        index_bits, group_bits = len(positions).bit_length(), len(extent).bit_length()
-        side_bits = min(_SIDE_BITS, (63 - index_bits - group_bits) // 2 // _LEVELS * _LEVELS)
-        keys = np.empty(len(positions), dtype=np.uint64)
-        _pack_keys(local, group, low, np.maximum(extent, _TINY), side_bits, index_bits, _TABLE, keys)
-        keys.sort()
-        order[positions] = order[positions][keys & np.uint64((1 << index_bits) - 1)]
-        starts, lengths = _crowded_runs(keys >> np.uint64(index_bits))
-        kept = np.repeat(starts - np.cumsum(lengths) + lengths, lengths) + np.arange(lengths.sum())
-        positions = positions[kept]
+    low, extent = (np.repeat(bound, rounds, axis=0) for bound in _boxes(xy, np.zeros(1, dtype=np.int64)))
+    order, starts, lengths = _along_curves(xy, group, low, extent)
+    positions = np.arange(0)  # of the points that crowd a cell, run after run
+    while len(starts):
+        run = np.repeat(starts - np.cumsum(lengths) + lengths, lengths) + np.arange(lengths.sum())
+        positions = positions[run] if len(positions) else run
         local = xy[order[positions]]
+        low, extent = _boxes(local, np.cumsum(lengths) - lengths)
+        spread = extent > 0.0  # the others are copies of one point
+        kept = np.repeat(spread, lengths)
+        group = np.repeat(np.cumsum(spread) - 1, lengths)[kept]
+        positions = positions[kept]
         if len(positions) == 0:
             break
-        low, extent = _boxes(local, np.cumsum(lengths) - lengths)
-        spread = extent > 0.0
-        group = np.repeat(np.cumsum(spread) - 1, lengths)
-        kept = np.repeat(spread, lengths)
-        positions, local, group = positions[kept], local[kept], group[kept]
-        low, extent = low[spread], extent[spread]
+        rank, starts, lengths = _along_curves(local[kept], group, low[spread], extent[spread])
+        order[positions] = order[positions][rank]
     return order
