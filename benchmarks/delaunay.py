@@ -58,7 +58,7 @@ def _growth(section: Section, quick: bool) -> None:
 
 
 def run(*, quick: bool = False, rounds: int = 5) -> None:
-    """Race all meshers on all inputs and write the section ``delaunay``; quick runs are a hundredth, and not written."""
+    """Race all meshers on all inputs and write the section; a quick run is a hundredth, and not written."""
     section = Section("delaunay", "Delaunay triangulations of points")
     rows = []
     for name, (_, size, title) in INPUTS.items():
@@ -71,8 +71,8 @@ def run(*, quick: bool = False, rounds: int = 5) -> None:
     _growth(section, quick)
     inside, whole = later_start_seconds()
     section.text(
-        f"First call ever on a machine, compilation included: {first_call_seconds():.1f} s. Import and a 100-point call "
-        f"in a later process: {inside:.2f} s ({whole:.2f} s for the whole process)."
+        f"First call ever on a machine, compilation included: {first_call_seconds():.1f} s. Import and a 100-point "
+        f"call in a later process: {inside:.2f} s ({whole:.2f} s for the whole process)."
     )
     if not quick:
         section.write()

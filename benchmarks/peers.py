@@ -72,7 +72,8 @@ def _cdt(points: FloatArray) -> int:
     import pythoncdt as cdt
 
     mesh = cdt.Triangulation(cdt.VertexInsertionOrder.AUTO, cdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0)
-    mesh.insert_vertices(points)
+    vertices: Any = points  # any buffer of pairs of doubles
+    mesh.insert_vertices(vertices)
     mesh.erase_super_triangle()
     return int(mesh.triangles_count())
 

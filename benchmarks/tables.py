@@ -16,9 +16,9 @@ __all__ = ["Section", "machine"]
 _PAGE = Path(__file__).resolve().parent.parent / "docs" / "benchmarks.md"
 _HEAD = """# Benchmarks
 
-Side by side in one run on one machine: each mesher in a process of its own, taking turns round after round; medians, and
-in parentheses the ratio to exactmesh (2.0 means that it takes twice as long). Rerun with `python -m benchmarks delaunay`
-and `python -m benchmarks verify` after `pip install '.[bench]'`; each run rewrites its section.
+Side by side in one run on one machine: each mesher in a process of its own, taking turns round after round; medians,
+and in parentheses the ratio to exactmesh (2.0: it takes twice as long). Rerun with `python -m benchmarks delaunay` and
+`python -m benchmarks verify` after `pip install '.[bench]'`; each run rewrites its section.
 """
 
 

@@ -110,7 +110,7 @@ class _Worker:
 
 
 def race(keys: Sequence[str], name: str, *, size: int | None = None, rounds: int = 5) -> dict[str, Outcome]:
-    """Let the meshers take turns on one input, round after round, so that a slow moment of the machine hits them all."""
+    """Let the meshers take turns on one input, round after round: a slow moment of the machine hits them all."""
     workers = {key: _Worker(key, name, size) for key in keys}
     for _ in range(rounds):
         for worker in workers.values():

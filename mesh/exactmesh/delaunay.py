@@ -1,9 +1,9 @@
 """Randomized incremental insertion with flips: points in, THE Delaunay triangulation out.
 
 Each point is located by a walk, joined to the corners of its triangle, and the edges of its link are flipped until all
-pass the perturbed incircle test. A ghost vertex closes the hull: the face on the outer side of a hull edge u -> v is the
-ghost triangle (v, u, ghost), whose circumdisk is the open half plane outside, so points beyond the hull take the same
-path as those inside. Reference [Guibas 1985], [Lawson 1977], [Amenta 2003], [Shewchuk 1997].
+pass the perturbed incircle test. A ghost vertex closes the hull: the face on the outer side of a hull edge u -> v is
+the ghost triangle (v, u, ghost), whose circumdisk is the open half plane outside, so points beyond the hull take the
+same path as those inside. Reference [Guibas 1985], [Lawson 1977], [Amenta 2003], [Shewchuk 1997].
 """
 
 from collections.abc import Callable
@@ -247,8 +247,8 @@ def _number_vertices(order: IndexArray, twin: EdgeArray) -> tuple[IndexArray, Ed
 def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None = None) -> Triangulation:
     """Return the Delaunay triangulation of the points: exact, and unique.
 
-    Cocircular points are triangulated by a symbolic perturbation (:func:`exactkernel.incircle_perturbed`), so the result
-    depends on the points alone: it is the same for every seed and every order of the input, up to the numbering.
+    Cocircular points are triangulated by a symbolic perturbation (:func:`exactkernel.incircle_perturbed`), so the
+    result depends on the points alone: it is the same for every seed and every order of the input, up to numbering.
 
     Args:
         points: (n, 2) finite coordinates; float64, or any numeric dtype whose values are doubles exactly.

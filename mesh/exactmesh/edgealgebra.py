@@ -144,8 +144,8 @@ def splice(ring: EdgeArray, a: int, b: int) -> None:
     ring[alpha], ring[beta] = ring[beta], ring[alpha]
 
 
-# For a primal edge (r even) turning is an XOR: rot(e) = e ^ 1, inv_rot(e) = e ^ 3, and back for its dual. The algorithms
-# walk and build primal edges only, by the face relation lnext and the vertex relation onext.
+# For a primal edge (r even) turning is an XOR: rot(e) = e ^ 1, inv_rot(e) = e ^ 3, and back for its dual. The
+# algorithms walk and build primal edges only, by the face relation lnext and the vertex relation onext.
 
 
 @jit

@@ -1,7 +1,7 @@
 """Lawson's algorithm: flip edges that are not locally Delaunay, from any triangulation, until there are none.
 
-Each flip of ac to bd lowers the lifted surface, by exactly incircle(a, b, c, d) in a potential that is bounded below, so
-the algorithm ends; with the perturbed test it ends in one and the same triangulation from wherever it starts.
+Each flip of ac to bd lowers the lifted surface, by exactly incircle(a, b, c, d) in a potential that is bounded below,
+so the algorithm ends; with the perturbed test it ends in one and the same triangulation from wherever it starts.
 Reference [Lawson 1977], [Edelsbrunner 2001].
 """
 
@@ -64,7 +64,13 @@ def is_locally_delaunay(points: FloatArray, edge: Edge[Primal]) -> bool:
 
 
 def is_flippable(points: FloatArray, edge: Edge[Primal]) -> bool:
-    """Tell whether the two triangles at the edge form a strictly convex quadrilateral."""
+    """Tell whether the two triangles at the edge form a strictly convex quadrilateral; arguments as above.
+
+    >>> from exactmesh import QuadEdge, is_flippable
+    >>> surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+    >>> [(e.org, e.dest) for e in surface.edges() if is_flippable([(0, 0), (4, 0), (5, 3), (0, 1)], e)]
+    [(2, 0)]
+    """
     if OUTSIDE in (edge.left, edge.right):
         return False
     a, b, c, d = _corners(points, edge)
@@ -76,6 +82,13 @@ def flip(points: FloatArray, edge: Edge[Primal]) -> None:
 
     Raises:
         TopologyError: the edge is on the hull, or its quadrilateral is not strictly convex.
+
+    >>> from exactmesh import QuadEdge, flip
+    >>> surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+    >>> diagonal = next(e for e in surface.edges() if {e.org, e.dest} == {0, 2})
+    >>> flip([(0, 0), (4, 0), (5, 3), (0, 1)], diagonal)
+    >>> sorted((diagonal.org, diagonal.dest))
+    [1, 3]
     """
     if not is_flippable(points, edge):
         raise TopologyError(f"the edge {edge.org} -> {edge.dest} cannot be flipped", indices=[edge.org, edge.dest])

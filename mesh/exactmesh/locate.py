@@ -22,7 +22,7 @@ _CHUNK = 1 << 17
 def _walk(
     k: Context, points: FloatArray, triangles: IntArray, neighbors: IntArray, start: int, x: float, y: float
 ) -> int:
-    """Return the triangle whose closure contains (x, y), or -1 - t for the triangle t at whose hull edge it was left."""
+    """Return the triangle whose closure contains (x, y), or -1 - t if the walk left the hull from triangle t."""
     t, came_from, side = start, -1, 0
     while True:
         side = (side * 5 + t + 1) % 3  # any side may be the first to be tested

@@ -224,8 +224,8 @@ def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
 class QuadEdge:
     """A subdivision of an orientable surface: vertices, edges and faces, and its dual at the same time.
 
-    It knows no coordinates. ``make_edge`` and ``splice`` build everything; ``connect``, ``delete_edge`` and ``swap`` are
-    made of them. Each operation takes constant time (``make_edge`` on average).
+    It knows no coordinates. ``make_edge`` and ``splice`` build everything; ``connect``, ``delete_edge`` and ``swap``
+    are made of them. Each operation takes constant time (``make_edge`` on average).
 
     >>> from exactmesh import QuadEdge, Vertex
     >>> surface = QuadEdge()
