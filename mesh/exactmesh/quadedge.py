@@ -384,11 +384,14 @@ class QuadEdge:
 
         If the origins were two, they become one; if they were one, it becomes two; the same for the left faces.
 
-                    a.onext                                a.onext
-                     \\      b                                \\       b
-                      .-----.              ->                 .  ^   .
-                     /      \\                                / \\_|__/ \\
-                    a      b.onext                          a      b.onext
+            a'       b                 a'   b
+              \\     /                    \\ /
+               o   o          <->         o           counterclockwise: a, b', b, a'
+              /     \\                    / \\
+            a        b'                 a   b'
+
+              onext(a) = a'              onext(a) = b'
+              onext(b) = b'              onext(b) = a'
         """
         self._own(a, b)
         algebra.splice(self._ring, a.index, b.index)
