@@ -7,6 +7,8 @@ import pytest
 from gmpy2 import mpq
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from proofs_tests import kernel_oracle as oracle
+from proofs_tests.kernel_strategies import Point, point_tuples
 
 from exactkernel import (
     DegenerateError,
@@ -17,8 +19,6 @@ from exactkernel import (
     rounded,
     segment_crossing,
 )
-from proofs_tests import kernel_oracle as oracle
-from proofs_tests.kernel_strategies import Point, point_tuples
 
 ExactPoint = tuple[Fraction, Fraction]
 

@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive
 
 from exactkernel.constants import INCIRCLE_BOUND, ORIENT2D_BOUND
 from exactkernel.diametral import diametral_filter
 from exactkernel.orient2d import orient2d_filter
-from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive
 
 U = Fraction(1, 2**53)
 

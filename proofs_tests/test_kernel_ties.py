@@ -5,9 +5,9 @@ from itertools import combinations, permutations
 from random import Random
 
 import pytest
+from proofs_tests.kernel_oracle import parity
 
 from exactkernel import incircle, incircle_perturbed, orient2d
-from proofs_tests.kernel_oracle import parity
 
 Cell = tuple[int, int]
 Predicate = Callable[[Cell, Cell, Cell, Cell], int]
@@ -63,7 +63,7 @@ def triangulation(points: Sequence[Cell], predicate: Predicate) -> list[tuple[Ce
         if turn == 0:
             continue
         if turn < 0:
-            b, c = c, b  # noqa: PLW2901
+            b, c = c, b
         if all(predicate(a, b, c, p) < 0 for p in points if p not in (a, b, c)):
             found.append((a, b, c))
     return found

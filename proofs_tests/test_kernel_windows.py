@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from proofs_tests import kernel_oracle as oracle
+from proofs_tests.kernel_strategies import Point, point_tuples
 
 import exactkernel as ek
 from exactkernel import constants
 from exactkernel.context import bits_of, make_context, scaled_into_window
 from exactkernel.incircle import incircle_adaptive
 from exactkernel.orient2d import orient2d_adaptive
-from proofs_tests import kernel_oracle as oracle
-from proofs_tests.kernel_strategies import Point, point_tuples
 
 STEP_2 = math.ulp(constants.MIN_COORDINATE_DEGREE_2)
 STEP_4 = math.ulp(constants.MIN_COORDINATE_DEGREE_4)
@@ -36,7 +36,9 @@ class TestScalarWindow:
     """At each end of each window: the last coordinate inside never needs rationals, the next one outside always does."""
 
     @staticmethod
-    def stages(staged: Callable[..., tuple[ek.Sign, ek.Stage]], exact: Callable[..., int], size: float) -> set[ek.Stage]:
+    def stages(
+        staged: Callable[..., tuple[ek.Sign, ek.Stage]], exact: Callable[..., int], size: float
+    ) -> set[ek.Stage]:
         corners: list[Point] = [(size, size), (-size, size), (-size, -size), (size, -size), (0.0, 0.0)]
         n = 4 if staged is ek.incircle_staged else 3
         tuples = [tuple(corners[(i + j * j) % 5] for j in range(n)) for i in range(5)]
@@ -52,7 +54,12 @@ class TestScalarWindow:
         ("staged", "exact", "smallest", "largest"),
         [
             (ek.orient2d_staged, oracle.orient2d, constants.MIN_COORDINATE_DEGREE_2, constants.MAX_COORDINATE_DEGREE_2),
-            (ek.diametral_staged, oracle.diametral, constants.MIN_COORDINATE_DEGREE_2, constants.MAX_COORDINATE_DEGREE_2),
+            (
+                ek.diametral_staged,
+                oracle.diametral,
+                constants.MIN_COORDINATE_DEGREE_2,
+                constants.MAX_COORDINATE_DEGREE_2,
+            ),
             (ek.incircle_staged, oracle.incircle, constants.MIN_COORDINATE_DEGREE_4, constants.MAX_COORDINATE_DEGREE_4),
         ],
     )
@@ -77,7 +84,9 @@ class TestContext:
     def test_scan(self, values: list[float]) -> None:
         self.check_scan(values)
 
-    @given(st.lists(st.builds(math.ldexp, st.sampled_from([0.0, 1.0, -3.0, 5.0]), st.integers(-1074, 1020)), max_size=6))
+    @given(
+        st.lists(st.builds(math.ldexp, st.sampled_from([0.0, 1.0, -3.0, 5.0]), st.integers(-1074, 1020)), max_size=6)
+    )
     def test_scan_of_few_bits(self, values: list[float]) -> None:
         self.check_scan(values)
 
