@@ -64,12 +64,12 @@ def expansion_arithmetic() -> dict[str, Digest]:
         n = expansions.determinant_2x2(*p, *q, *pairs[4], *pairs[-1], h, scratch)
         digest.add(n, *h[:n].tolist(), expansions.expansion_sign(h, n))
     e, f, total = np.zeros(2), np.zeros(2), np.zeros(8)
-    for (p, p_tail), (q, q_tail) in product(pairs, repeat=2):
-        ne, nf = expansions.pair(p, p_tail, e), expansions.pair(q, q_tail, f)
+    for (a, a_tail), (b, b_tail) in product(pairs, repeat=2):
+        ne, nf = expansions.pair(a, a_tail, e), expansions.pair(b, b_tail, f)
         expansions.negate(e, ne)
         for n in (
             expansions.expansion_sum(e, ne, f, nf, h),
-            expansions.scale_expansion(e, ne, q, h),
+            expansions.scale_expansion(e, ne, b, h),
             expansions.expansion_product(e, ne, f, nf, h, scratch, total),
         ):
             digest.add(n, *h[:n].tolist())
@@ -78,7 +78,7 @@ def expansion_arithmetic() -> dict[str, Digest]:
 
 def predicates() -> dict[str, Digest]:
     digests = {name: Digest() for name in ("orient2d", "diametral", "incircle", "perturbed", "batch", "scan")}
-    triples = list(product(POINTS[::2].tolist(), repeat=3))
+    triples = list(product(POINTS[[1, 3, 6, 10, 16, 17, 18, 20]].tolist(), repeat=3))
     for triple in triples:
         digests["orient2d"].add(*ek.orient2d_staged(*triple))
         digests["diametral"].add(*ek.diametral_staged(*triple))

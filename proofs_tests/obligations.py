@@ -30,10 +30,9 @@ class Obligation:
     def of(cls, node: ast.ClassDef | ast.FunctionDef, call: ast.Call, path: Path) -> "Obligation":
         identifier, statement = (ast.literal_eval(argument) for argument in call.args)
         letters, digits = re.fullmatch(r"([A-Z]+)(\d+)", identifier).groups()  # type: ignore[union-attr]  # or fail
+        where = path.relative_to(ROOT).as_posix()
         controls = sum(isinstance(inner, ast.FunctionDef) and "control" in inner.name for inner in ast.walk(node))
-        return cls(
-            (letters, int(digits)), statement, path.relative_to(ROOT).as_posix(), node.name, node.lineno, controls
-        )
+        return cls((letters, int(digits)), statement, where, node.name, node.lineno, controls)
 
 
 def _marker(decorator: ast.expr) -> ast.Call | None:
@@ -66,8 +65,9 @@ def table(obligations: list[Obligation]) -> str:
         "| id | statement | where | controls |",
         "|---|---|---|---|",
     ]
-    for o in obligations:
-        lines.append(f"| {''.join(map(str, o.id))} | {o.statement} | `{o.file}` {o.name} | {o.controls or ''} |")
+    lines += [
+        f"| {''.join(map(str, o.id))} | {o.statement} | `{o.file}` {o.name} | {o.controls or ''} |" for o in obligations
+    ]
     return "\n".join(lines) + "\n"
 
 

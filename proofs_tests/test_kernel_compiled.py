@@ -23,7 +23,7 @@ from proofs_tests.minifloat import Arithmetic
 import exactkernel as ek
 from exactkernel import batch, doubledouble, expansions, rational
 from exactkernel.context import guarded_context
-from exactkernel.jit import COMPILED, cache_directory, is_cache_warm
+from exactkernel.jit import cache_directory, is_cache_warm
 
 FUSED = re.compile(r"\bv?fn?m(?:add|sub|la|ls)\w*")
 HAS_FUSED = platform.machine() in ("aarch64", "arm64") or llvmlite.binding.get_host_cpu_features().get("fma", False)
@@ -94,7 +94,7 @@ def machine_code(function: Callable[..., object], signature: object, **options: 
 @pytest.mark.compiled
 @pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of the kernel")
 class TestMachineCode:
-    """No compiled kernel function contains a fused multiply-add, which would round once where the source rounds twice."""
+    """No compiled function contains a fused multiply-add, which rounds once where the source rounds twice."""
 
     def test_every_function(self) -> None:
         digests()
@@ -110,9 +110,10 @@ class TestMachineCode:
 
     def test_no_function_allows_contraction(self) -> None:
         names = [name for name in sys.modules if name.startswith("exactkernel.")]
-        options = {(n, f): g.targetoptions["fastmath"] for n in names for f, g in compiled_functions(n).items()}  # type: ignore[attr-defined]  # numba's
+        functions = [function for name in names for function in compiled_functions(name).values()]
+        options = [getattr(function, "targetoptions")["fastmath"] for function in functions]  # noqa: B009
         assert len(options) > 40
-        assert not any(options.values())
+        assert not any(options)
 
     @pytest.mark.skipif(not HAS_FUSED, reason="this processor has no fused multiply-add")
     def test_control_contraction_is_seen(self) -> None:
@@ -133,13 +134,13 @@ class Interrupting:
 
     def __init__(self, error: type[BaseException], every: int) -> None:
         self.error, self.every, self.calls = error, every, 0
-        self.predicate = rational.orient2d_rational
+        self.predicate: Callable[..., int] = rational.orient2d_rational
 
     def __call__(self, *points: rational.RationalPoint) -> int:
         self.calls += 1
         if self.calls % self.every == 0:
             raise self.error
-        return self.predicate(*points)  # type: ignore[arg-type, call-arg]  # three points
+        return self.predicate(*points)
 
 
 @pytest.mark.obligation("J1", "an interrupt in the rational stage never yields a wrong sign, and is not lost")
@@ -166,6 +167,29 @@ class TestInterrupts:
             ek.orient2d(FAR[0], WIDE[0], THIRD[0])
         monkeypatch.undo()
         assert ek.orient2d(FAR[1], WIDE[1], THIRD[1]) == EXACT[1]
+
+    @pytest.mark.parametrize(
+        ("name", "predicate", "n"),
+        [("orient2d", ek.orient2d, 3), ("diametral", ek.diametral, 3), ("incircle", ek.incircle, 4)],
+    )
+    def test_every_predicate_asks_again(
+        self, name: str, predicate: Callable[..., int], n: int, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        points = ((1e-200, 0.0), (0.0, 1e200), (-1e-200, 0.0), (0.0, 1.0))[:n]
+        expected = predicate(*points)
+        calls = []
+
+        def first_interrupted(*exact: rational.RationalPoint) -> int:
+            calls.append(exact)
+            if len(calls) == 1:
+                raise KeyboardInterrupt
+            return int(expected)
+
+        monkeypatch.setattr(rational, f"{name}_rational", first_interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            predicate(*points)
+        assert len(calls) == 2
+        assert calls[0] == calls[1]
 
     @pytest.mark.parametrize("error", [RecursionError, MemoryError])
     def test_what_fails_for_good_is_an_error_not_a_loop(
@@ -210,15 +234,14 @@ class TestInterrupts:
         with pytest.raises(KeyboardInterrupt):
             rational.raise_if_interrupted()
 
-    def test_an_interrupt_that_ctypes_swallowed_is_reported(self) -> None:
-        """The second attempt at a question, with nothing on record: the first was interrupted before it could record."""
+    def test_an_interrupt_that_ctypes_swallowed_is_reported(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A second attempt with nothing on record: the first was interrupted before it could record."""
         mailbox = np.zeros(2, dtype=np.int64)
-        signature = rational._register("exactmesh_test_swallowed", lambda *_: -1, 6)
-        if COMPILED:
-            answer = rational._keep_alive.pop()
-            answer(mailbox.ctypes.data, 5, 1, *[0.0] * 6)  # type: ignore[operator]  # a ctypes function
-        else:
-            signature(mailbox.ctypes.data, 5, 1, *[0.0] * 6)
+        monkeypatch.setattr(rational, "COMPILED", True)
+        rational._register("exactmesh_test_swallowed", lambda *_: -1, 6)
+        answer = rational._keep_alive.pop()
+        assert callable(answer)
+        answer(mailbox.ctypes.data, 5, 1, *[0.0] * 6)
         assert mailbox.tolist() == [0, 5 * 4 + 1]
         with pytest.raises(KeyboardInterrupt):
             rational.raise_if_interrupted()
@@ -227,22 +250,19 @@ class TestInterrupts:
     def test_control_a_failing_ctypes_callback_returns_the_answer_before(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Why answers bear numbers: by return value, the failing call repeats an old answer (or worse)."""
 
-        @ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_double)
         def sign_plus_two(x: float) -> int:
             if x == 0.0:
                 raise KeyboardInterrupt
             return 3 if x > 0 else 1
 
         monkeypatch.setattr(sys, "unraisablehook", lambda _: None)
-        address = ctypes.cast(sign_plus_two, ctypes.c_void_p).value
+        callback = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_double)(sign_plus_two)
+        address = ctypes.cast(callback, ctypes.c_void_p).value
         llvmlite.binding.add_symbol("exactmesh_test_by_value", address)
-        ask = numba.types.ExternalFunction("exactmesh_test_by_value", numba.types.int64(numba.types.float64))
-
-        @numba.njit
-        def one_after_the_other() -> tuple[int, int, int, int]:
-            return ask(1.0), ask(0.0), ask(-1.0), ask(0.0)
-
-        answers = one_after_the_other()
+        signature = numba.types.int64(numba.types.float64)
+        ask: Arithmetic = numba.types.ExternalFunction("exactmesh_test_by_value", signature)
+        four: Arithmetic = numba.njit(lambda: (ask(1.0), ask(0.0), ask(-1.0), ask(0.0)))
+        answers = four()
         assert answers[::2] == (3, 1)
         if answers[1::2] == (0, 0):
             pytest.skip("this ctypes happens to return 0")

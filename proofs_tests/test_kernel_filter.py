@@ -34,7 +34,7 @@ def largest_needed(last: Bounded) -> Fraction:
 
 @pytest.mark.obligation("K1", "the filter constants are sound for u = 2^-53, by exact calculus")
 class TestConstants:
-    """The bound that the calculus of rounding errors needs is at most the constant of the filter, in exact fractions."""
+    """The bound that the calculus of rounding errors asks for is at most the constant of the filter."""
 
     difference = Bounded(U)
     product = difference * difference

@@ -21,8 +21,7 @@ def is_antisymmetric(predicate: Predicate, points: Sequence[Cell]) -> bool:
     a, b, c, d = points
     reference = int(predicate(a, b, c, d))
     return reference != 0 and all(
-        int(predicate(*(points[i] for i in p))) == parity(p) * reference  # type: ignore[call-arg]  # four of them
-        for p in permutations(range(4))
+        int(predicate(*(points[i] for i in p))) == parity(p) * reference for p in permutations(range(4))
     )
 
 
@@ -33,8 +32,8 @@ def ignoring_the_order(a: Cell, b: Cell, c: Cell, d: Cell) -> int:
 
 @pytest.mark.obligation("K9", "perturbed incircle is never zero and antisymmetric (exhaustive on the 4 x 4 grid)")
 class TestPerturbedSign:
-    """For four distinct points that are not all on a line the sign is not 0, changes with the parity of the order, and is
-    that of incircle wherever that decides."""
+    """For four distinct points that are not all on a line the sign is not 0, changes with the parity of the order, and
+    is that of incircle wherever that decides."""
 
     def test_all_fours_of_a_grid(self) -> None:
         ties = 0

@@ -33,7 +33,7 @@ def largest_unit(values: list[float]) -> Fraction | None:
 
 @pytest.mark.obligation("K6", "a coordinate inside the window is decided in doubles, one step outside in rationals")
 class TestScalarWindow:
-    """At each end of each window: the last coordinate inside never needs rationals, the next one outside always does."""
+    """At each end of each window: the last coordinate inside needs no rationals, the next one outside always does."""
 
     @staticmethod
     def stages(
@@ -146,7 +146,7 @@ class TestContext:
 
 @pytest.mark.obligation("K6", "scaling into the window is exact and changes no sign")
 class TestScaling:
-    """What scaled_into_window returns is the input times one power of two, inside the window if any power leads there."""
+    """The result is the input times one power of two, inside the window if any power of two leads there."""
 
     @given(point_tuples(4))
     def test_scaling(self, points: tuple[Point, ...]) -> None:
