@@ -209,6 +209,12 @@ class TestExpansions:
 class TestDeterminant:
     """determinant_2x2 of nonoverlapping pairs of doubles has the exact value, in sixteen components or fewer."""
 
+    def test_scaling_without_rounding_leaves_no_zeros(self) -> None:
+        h = np.zeros(4)
+        assert scale_expansion(np.array([1.0, 4.0]), 2, 2.0, h) == 1
+        assert h[0] == 10.0
+        assert scale_expansion(np.array([1.0, 4.0]), 2, 0.0, h) == 0
+
     PAIRS = ((1.0, 2.0**-53), (-3.0, 2.0**-60), (2.0**200 + 2.0**150, -(2.0**100)), (0.0, 0.0), (2.0**-200, 0.0))
 
     def test_all_quadruples(self) -> None:

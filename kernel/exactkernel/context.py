@@ -6,6 +6,7 @@ looks at its own few coordinates before it chooses between expansions and ration
 """
 
 import math
+import threading
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ __all__ = [
     "guarded_context",
     "make_context",
     "scaled_into_window",
+    "thread_context",
 ]
 
 #: Rows of ``Context.counts``; diametral counts with orient2d, whose stages it shares.
@@ -107,6 +109,19 @@ def make_context(coordinates: FloatArray) -> Context:
 def guarded_context() -> Context:
     """Return a context that assumes nothing: every call looks at its own coordinates."""
     return _context(math.inf, 0.0)
+
+
+class _PerThread(threading.local):
+    def __init__(self) -> None:
+        self.guarded = guarded_context()
+
+
+_PER_THREAD = _PerThread()
+
+
+def thread_context() -> Context:
+    """Return this thread's own guarded context, for single calls: scratch and mailbox must not be shared."""
+    return _PER_THREAD.guarded
 
 
 def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:

@@ -55,7 +55,7 @@ def _rational(value: object, point: object) -> mpq:
             raise NonFiniteError(f"{shown(point)} is not finite")
         return mpq(*value.as_integer_ratio())
     if isinstance(value, Fraction):
-        return mpq(value.numerator, value.denominator)
+        return mpq(int(value.numerator), int(value.denominator))  # Fraction(np.int64(1)) keeps numpy's integer
     if isinstance(value, (int, type(mpz()), type(mpq()))) and not isinstance(value, bool):
         return mpq(value)
     raise CoordinateError(

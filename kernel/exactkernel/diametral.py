@@ -4,7 +4,7 @@ import math
 
 from exactkernel.codes import DECODED, FILTER, GRID, RATIONAL
 from exactkernel.constants import ORIENT2D_BOUND
-from exactkernel.context import ORIENT2D_ROW, Context, guarded_context
+from exactkernel.context import ORIENT2D_ROW, Context, thread_context
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.expansions import two_diff
 from exactkernel.jit import jit, jit_inline
@@ -66,9 +66,6 @@ def diametral_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, p
     return diametral_exact(c, ax, ay, bx, by, px, py)
 
 
-_GUARDED = guarded_context()
-
-
 def diametral_staged(a: PointLike, b: PointLike, p: PointLike) -> tuple[Sign, Stage]:
     """Return the sign of :func:`diametral` and the stage that decided it.
 
@@ -80,7 +77,7 @@ def diametral_staged(a: PointLike, b: PointLike, p: PointLike) -> tuple[Sign, St
     if doubles is None:
         pa, pb, pp = rationals_of(a, b, p)
         return Sign(diametral_rational(pa, pb, pp)), Stage.RATIONAL
-    code = diametral_slow(_GUARDED, *doubles)
+    code = diametral_slow(thread_context(), *doubles)
     raise_if_interrupted()
     return DECODED[code]
 

@@ -9,7 +9,7 @@ from exactkernel.constants import (
     MAX_COORDINATE_DEGREE_4,
     MIN_COORDINATE_DEGREE_4,
 )
-from exactkernel.context import INCIRCLE_ROW, Context, guarded_context
+from exactkernel.context import INCIRCLE_ROW, Context, thread_context
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import determinant_2x2, expansion_product, expansion_sign, expansion_sum, two_diff
@@ -275,9 +275,6 @@ def incircle_perturbed_adaptive(
     return incircle_perturbed_exact(k, ax, ay, bx, by, cx, cy, dx, dy)
 
 
-_GUARDED = guarded_context()
-
-
 def incircle_staged(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> tuple[Sign, Stage]:
     """Return the sign of :func:`incircle` and the stage that decided it.
 
@@ -289,7 +286,7 @@ def incircle_staged(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> t
     if doubles is None:
         pa, pb, pc, pd = rationals_of(a, b, c, d)
         return Sign(incircle_rational(pa, pb, pc, pd)), Stage.RATIONAL
-    code = incircle_slow(_GUARDED, *doubles)
+    code = incircle_slow(thread_context(), *doubles)
     raise_if_interrupted()
     return DECODED[code]
 
@@ -348,6 +345,6 @@ def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -
     doubles = doubles_of(a, b, c, d)
     if doubles is None:
         return Sign(_perturbed_rational(rationals_of(a, b, c, d)))
-    sign = incircle_perturbed_adaptive(_GUARDED, *doubles)
+    sign = incircle_perturbed_adaptive(thread_context(), *doubles)
     raise_if_interrupted()
     return Sign(sign)

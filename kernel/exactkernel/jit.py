@@ -30,7 +30,8 @@ R = TypeVar("R")
 #: False under ``NUMBA_DISABLE_JIT=1``: the same source runs interpreted, for coverage, mutation testing and stepping.
 COMPILED: bool = not _config.DISABLE_JIT
 
-if not COMPILED:  # numpy's scalars warn of an overflow to infinity, which machine code lets pass, as the filters expect
+if not COMPILED:  # pragma: no branch
+    # numpy's scalars warn of an overflow to infinity, which machine code lets pass, as the filters expect.
     np.seterr(over="ignore", invalid="ignore")
 
 _UNUSED_AFTER_SECONDS = 30 * 24 * 3600

@@ -9,7 +9,7 @@ from exactkernel.constants import (
     MIN_COORDINATE_DEGREE_2,
     ORIENT2D_BOUND,
 )
-from exactkernel.context import ORIENT2D_ROW, Context, guarded_context
+from exactkernel.context import ORIENT2D_ROW, Context, thread_context
 from exactkernel.coordinates import doubles_of, rationals_of
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import determinant_2x2, expansion_sign, two_diff
@@ -103,9 +103,6 @@ def orient2d_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, cx
     return orient2d_exact(c, ax, ay, bx, by, cx, cy)
 
 
-_GUARDED = guarded_context()
-
-
 def orient2d_staged(a: PointLike, b: PointLike, c: PointLike) -> tuple[Sign, Stage]:
     """Return the sign of :func:`orient2d` and the stage that decided it.
 
@@ -119,7 +116,7 @@ def orient2d_staged(a: PointLike, b: PointLike, c: PointLike) -> tuple[Sign, Sta
     if doubles is None:
         pa, pb, pc = rationals_of(a, b, c)
         return Sign(orient2d_rational(pa, pb, pc)), Stage.RATIONAL
-    code = orient2d_slow(_GUARDED, *doubles)
+    code = orient2d_slow(thread_context(), *doubles)
     raise_if_interrupted()
     return DECODED[code]
 

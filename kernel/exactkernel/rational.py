@@ -85,7 +85,8 @@ def _register(name: str, predicate: Callable[..., int], arity: int) -> Callable[
     def answer(address: int, number: int, attempt: int, *coordinates: float) -> None:
         mailbox = (ctypes.c_int64 * 2).from_address(address)
         try:
-            if attempt > 0 and not _pending:  # the signal came before the try, and ctypes has swallowed its exception
+            if COMPILED and attempt > 0 and not _pending:
+                # The signal came before the try, and ctypes has swallowed its exception.
                 _pending.append(KeyboardInterrupt())
             mailbox[1] = number * 4 + predicate(*coordinates) + 2
         except (RecursionError, MemoryError):
