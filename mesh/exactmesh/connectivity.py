@@ -57,7 +57,8 @@ def check_neighbors(triangles: IntArray, neighbors: IntArray) -> None:
     if bad >= 0:
         t, i = divmod(bad, 3)
         raise TopologyError(
-            f"triangle {t} is not the neighbor of neighbors[{t}, {i}] = {neighbors[t, i]} across their edge", indices=[t]
+            f"triangle {t} is not the neighbor of neighbors[{t}, {i}] = {neighbors[t, i]} across their edge",
+            indices=[t],
         )
 
 
@@ -94,16 +95,23 @@ def edges_of(triangles: IntArray, neighbors: IntArray) -> IntArray:
     return np.stack([starts[own], ends[own]], axis=1)
 
 
+@jit
+def _follow(after: IntArray, cycle: IntArray) -> None:
+    """Fill the cycle from its first vertex on."""
+    for i in range(1, len(cycle)):
+        cycle[i] = after[cycle[i - 1]]
+
+
 def hull_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> IntArray:
     """Return the boundary cycle, int32, counterclockwise from its lexicographically smallest vertex. O(m)."""
     rows, corners = np.nonzero(neighbors < 0)
     starts, ends = triangles[rows, (corners + 1) % 3], triangles[rows, (corners + 2) % 3]
-    after = dict(zip(starts.tolist(), ends.tolist(), strict=True))
-    first = int(starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]])
-    cycle = [first]
-    while after[cycle[-1]] != first:
-        cycle.append(after[cycle[-1]])
-    return np.array(cycle, dtype=np.int32)
+    after = np.empty(len(points), dtype=np.int32)
+    after[starts] = ends
+    cycle = np.empty(len(starts), dtype=np.int32)
+    cycle[0] = starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]]
+    _follow(after, cycle)
+    return cycle
 
 
 @jit

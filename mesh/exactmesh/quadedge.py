@@ -188,6 +188,10 @@ class Edge(Generic[Kind]):
                 return
 
 
+def _is_flat_int32(array: object) -> bool:
+    return isinstance(array, np.ndarray) and array.dtype == np.int32 and array.ndim == 1 and array.flags.carray
+
+
 @jit
 def _first_broken(ring: EdgeArray, count: int) -> int:
     """Return the first quarter-edge that breaks an axiom of an edge algebra, or -1."""
@@ -224,8 +228,8 @@ def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
 class QuadEdge:
     """A subdivision of an orientable surface: vertices, edges and faces, and its dual at the same time.
 
-    It knows no coordinates. ``make_edge`` and ``splice`` build everything; ``connect``, ``delete_edge`` and ``swap`` are
-    made of them. Each operation takes constant time (``make_edge`` on average).
+    It knows no coordinates. ``make_edge`` and ``splice`` build everything; ``connect``, ``delete_edge`` and ``swap``
+    are made of them. Each operation takes constant time (``make_edge`` on average).
 
     >>> from exactmesh import QuadEdge, Vertex
     >>> surface = QuadEdge()
@@ -263,7 +267,7 @@ class QuadEdge:
             TopologyError: the lengths do not agree, or the ring breaks the axioms.
         """
         for name, array in (("ring", ring), ("vertex", vertex), ("face", face)):
-            if not (isinstance(array, np.ndarray) and array.dtype == np.int32 and array.ndim == 1 and array.flags.carray):
+            if not _is_flat_int32(array):
                 raise ShapeError(f"{name} must be a one-dimensional, contiguous and writable array of int32")
         if len(ring) % 4 or not 2 * len(vertex) == 2 * len(face) == len(ring):
             raise TopologyError(f"{len(ring)} ring entries need half as many origins, not {len(vertex)}, {len(face)}")

@@ -50,6 +50,8 @@ def areas_of(points: FloatArray, triangles: IntArray) -> FloatArray:
 def angles_of(points: FloatArray, triangles: IntArray) -> FloatArray:
     """Return the angle at each corner in degrees, float64 (m, 3)."""
     sides = _sides(points, triangles)
+    exponents = np.frexp(np.abs(sides).max(axis=(1, 2), initial=0.0))[1]
+    sides = np.ldexp(sides, -exponents[:, None, None])  # the square of a small triangle's side would underflow
     after, before = np.roll(sides, -1, axis=1), np.roll(sides, -2, axis=1)
     cross = np.abs(after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0])
     angles: FloatArray = np.degrees(np.arctan2(cross, -(after * before).sum(axis=2)))
@@ -67,16 +69,17 @@ def statistics_of(points: FloatArray, triangles: IntArray, edges: int, hull_vert
     scale = float(np.ldexp(1.0, int(np.frexp(np.abs(points).max())[1]) - 1))  # no square over- or underflows
     unit = points / scale
     sides = _sides(unit, triangles)
-    lengths = np.hypot(sides[..., 0], sides[..., 1]) * scale
     with np.errstate(over="ignore", under="ignore"):
+        lengths = np.hypot(sides[..., 0], sides[..., 1]) * scale
         areas = areas_of(unit, triangles) * scale * scale
+        area = float(areas.sum())
     angles = angles_of(unit, triangles)
     return Statistics(
         vertices=len(points),
         triangles=len(triangles),
         edges=edges,
         hull_vertices=hull_vertices,
-        area=float(areas.sum()),
+        area=area,
         smallest_area=float(areas.min()),
         largest_area=float(areas.max()),
         smallest_angle=float(angles.min()),
