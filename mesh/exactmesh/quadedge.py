@@ -311,7 +311,7 @@ class QuadEdge:
         after = self._ring[(2 * half) ^ 3] ^ 3  # left_next of every primal edge, nonsense for deleted ones
         live = self._ring[2 * half] != _FREE
         after[~live] = 0
-        triangular = after[after[after >> 1] >> 1] == 2 * half
+        triangular = (after[after[after >> 1] >> 1] == 2 * half) & (after != 2 * half)  # a loop comes back as well
         wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
         return triangles_of(self._ring, self._vertex, np.where(wanted, -1, OUTER).astype(np.int32))[0]
 
