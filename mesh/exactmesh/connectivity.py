@@ -7,7 +7,59 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import EdgeArray, link_ring
 from exactmesh.errors import TopologyError
 
-__all__ = ["edges_of", "hull_of", "neighbors_of", "rings_of"]
+__all__ = ["check_corners", "check_neighbors", "edges_of", "hull_of", "neighbors_of", "rings_of"]
+
+
+def check_corners(triangles: IntArray) -> None:
+    """Refuse triangles that are none: the loops below would leave their arrays.
+
+    Raises:
+        TopologyError: a corner is negative or repeated; ``indices`` names the triangles.
+    """
+    a, b, c = triangles.T
+    bad = np.flatnonzero((triangles.min(axis=1, initial=0) < 0) | (a == b) | (b == c) | (c == a))
+    if bad.size:
+        t = int(bad[0])
+        fault = "has a negative corner" if triangles[t].min() < 0 else "repeats a corner"
+        raise TopologyError(f"triangle {t} {tuple(triangles[t].tolist())} {fault}", indices=bad.tolist())
+
+
+@jit
+def _first_bad_neighbor(triangles: IntArray, neighbors: IntArray) -> int:
+    """Return 3 t + i for the first entry that the other side does not confirm, or -1."""
+    for t in range(len(triangles)):
+        for i in range(3):
+            u = neighbors[t, i]
+            if u == -1:
+                continue
+            if u < 0 or u >= len(triangles):
+                return 3 * t + i
+            start, stop = triangles[t, (i + 1) % 3], triangles[t, (i + 2) % 3]
+            confirmed = False
+            for j in range(3):
+                if triangles[u, (j + 1) % 3] == stop and triangles[u, (j + 2) % 3] == start:
+                    confirmed = neighbors[u, j] == t
+            if not confirmed:
+                return 3 * t + i
+    return -1
+
+
+def check_neighbors(triangles: IntArray, neighbors: IntArray) -> None:
+    """Refuse neighbors that are not mutual. O(m).
+
+    Raises:
+        TopologyError: an entry is no triangle with the same edge backwards and this one as its neighbor; ``indices``
+            names the triangle.
+    """
+    if len(neighbors) != len(triangles):
+        raise TopologyError(f"{len(neighbors)} rows of neighbors for {len(triangles)} triangles")
+    bad = int(_first_bad_neighbor(triangles, neighbors))
+    if bad >= 0:
+        t, i = divmod(bad, 3)
+        raise TopologyError(
+            f"triangle {t} is not the neighbor of neighbors[{t}, {i}] = {neighbors[t, i]} across their edge",
+            indices=[t],
+        )
 
 
 def neighbors_of(triangles: IntArray) -> IntArray:
@@ -43,16 +95,23 @@ def edges_of(triangles: IntArray, neighbors: IntArray) -> IntArray:
     return np.stack([starts[own], ends[own]], axis=1)
 
 
+@jit
+def _follow(after: IntArray, cycle: IntArray) -> None:
+    """Fill the cycle from its first vertex on."""
+    for i in range(1, len(cycle)):
+        cycle[i] = after[cycle[i - 1]]
+
+
 def hull_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> IntArray:
     """Return the boundary cycle, int32, counterclockwise from its lexicographically smallest vertex. O(m)."""
     rows, corners = np.nonzero(neighbors < 0)
     starts, ends = triangles[rows, (corners + 1) % 3], triangles[rows, (corners + 2) % 3]
-    after = dict(zip(starts.tolist(), ends.tolist(), strict=True))
-    first = int(starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]])
-    cycle = [first]
-    while after[cycle[-1]] != first:
-        cycle.append(after[cycle[-1]])
-    return np.array(cycle, dtype=np.int32)
+    after = np.empty(len(points), dtype=np.int32)
+    after[starts] = ends
+    cycle = np.empty(len(starts), dtype=np.int32)
+    cycle[0] = starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]]
+    _follow(after, cycle)
+    return cycle
 
 
 @jit

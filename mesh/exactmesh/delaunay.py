@@ -19,6 +19,7 @@ from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
+from exactmesh.chunks import chunk_size
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin, split_face, swap
 from exactmesh.errors import CollinearPointsError, TooFewPointsError, TooManyPointsError
 from exactmesh.extract import triangles_of
@@ -33,7 +34,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 #: 3 n edges of four quarter-edges each must be numbered in 31 bits.
 MAX_POINTS = 2**31 // 12
 
-_CHUNK = 1 << 17  # points between two looks at Ctrl-C and the progress bar
+_CHUNK = 1 << 17  # points between two looks at Ctrl-C and the progress bar, where predicates are fast
 
 
 # Coordinates are flat, xy[2 v] and xy[2 v + 1]: an index into two dimensions costs a multiplication more each time.
@@ -120,30 +121,35 @@ def legalize(k: Context, xy: FloatArray, ring: EdgeArray, org: EdgeArray, ghost:
 
 
 @jit
-def first_triangle(k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArray, org: EdgeArray) -> int:
-    """Move three points that are not collinear to the front and build their triangle and its three ghosts.
-
-    Returns the number of edges: 6, or 0 if all points lie on one line.
-    """
+def second_position(xy: FloatArray) -> int:
+    """Return the first vertex that lies elsewhere than vertex 0, or n."""
     n = len(xy) // 2
     b = 1
     while b < n and xy[2 * b] == xy[0] and xy[2 * b + 1] == xy[1]:
         b += 1
-    c = b + 1
-    turn = 0
-    while c < n:
-        turn = orient(k, xy, 0, b, c)
-        if turn != 0:
-            break
+    return b
+
+
+@jit
+def first_turn(k: Context, xy: FloatArray, b: int, first: int, stop: int) -> int:
+    """Return the first vertex of first .. stop - 1 that is not collinear with 0 and b, or stop."""
+    c = first
+    while c < stop and orient(k, xy, 0, b, c) == 0:
         c += 1
-    if turn == 0:
-        return 0
+    return c
+
+
+@jit
+def first_triangle(
+    k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArray, org: EdgeArray, b: int, c: int
+) -> None:
+    """Move the vertices b < c, not collinear with 0, to the front and build the triangle and its three ghosts."""
     for position, chosen in ((1, b), (2, c)):
         order[position], order[chosen] = order[chosen], order[position]
         for axis in range(2):
             i, j = 2 * position + axis, 2 * chosen + axis
             xy[i], xy[j] = xy[j], xy[i]
-    second, third = (1, 2) if turn > 0 else (2, 1)
+    second, third = (1, 2) if orient(k, xy, 0, 1, 2) > 0 else (2, 1)
     org[0] = org[5] = 0
     org[2] = org[1] = second
     org[4] = org[3] = third
@@ -151,15 +157,13 @@ def first_triangle(k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArra
         f = (e + 4) % 12
         link_ring(ring, e, f)
         link_ring(ring, f ^ 2, e ^ 2)
-    split_face(ring, org, 2, 12, n)  # the ghost, in the outer face
-    return 6
+    split_face(ring, org, 2, 12, len(xy) // 2)  # the ghost, in the outer face
 
 
 @jit
 def insert_range(
     k: Context,
     xy: FloatArray,
-    order: IndexArray,
     ring: EdgeArray,
     org: EdgeArray,
     twin: EdgeArray,
@@ -174,11 +178,6 @@ def insert_range(
     """
     ghost = len(xy) // 2
     flips = 0
-    if edges == 0:
-        edges = first_triangle(k, xy, order, ring, org)
-        if edges == 0:
-            return start, edges, flips
-        first = 3
     for p in range(first, stop):
         e, zeros = locate(k, xy, ring, org, ghost, start, p)
         if zeros == 2:
@@ -203,6 +202,21 @@ def _refuse_flat(points: FloatArray) -> None:
     raise CollinearPointsError(f"all {len(points)} points lie on one line: they span no triangle")
 
 
+def _begin(xy: FloatArray, k: Context, order: IndexArray, ring: EdgeArray, org: EdgeArray) -> int:
+    """Build the first triangle; return the number of edges: 6, or 0 if all points lie on one line."""
+    n, b = len(xy) // 2, second_position(xy)
+    step = chunk_size(k, _CHUNK)
+    for first in range(b + 1, n, step):
+        stop = min(first + step, n)
+        c = first_turn(k, xy, b, first, stop)
+        raise_if_interrupted()
+        if c < stop:
+            first_triangle(k, xy, order, ring, org, b, c)
+            return 6
+    return 0
+
+
+@np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
 def _insert_all(
     xy: FloatArray, k: Context, order: IndexArray, progress: Progress | None
 ) -> tuple[EdgeArray, EdgeArray, EdgeArray, int, int]:
@@ -211,14 +225,14 @@ def _insert_all(
     ring = np.empty(12 * n, dtype=np.int32)  # n vertices and the ghost have 3 (n + 1) - 6 edges
     org = np.empty(6 * n, dtype=np.int32)
     twin = np.arange(n, dtype=np.int32)
-    start = edges = flips = 0
-    for first in range(0, n, _CHUNK):
-        stop = min(first + _CHUNK, n)
-        start, edges, more = insert_range(k, xy, order, ring, org, twin, first, stop, start, edges)
+    start = flips = 0
+    edges = _begin(xy, k, order, ring, org)
+    step = chunk_size(k, _CHUNK)
+    for first in range(3, n if edges else 0, step):
+        stop = min(first + step, n)
+        start, edges, more = insert_range(k, xy, ring, org, twin, first, stop, start, edges)
         flips += more
         raise_if_interrupted()
-        if edges == 0:
-            break
         if progress is not None:
             progress(stop, n)
     return ring, org, twin, int(edges), int(flips)
@@ -264,6 +278,8 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
         NonFiniteError: a coordinate is NaN or infinite; ``indices`` names the points.
         CoordinateError: a value would have to be rounded to become a double.
         ShapeError: not an array of shape (n, 2).
+        TooManyPointsError: more than 178,956,970 points.
+        SeedError: the seed is no integer, or negative.
 
     Expected O(n log n) for any input, O(n) after sorting for most. Reference [Guibas 1985], [Amenta 2003].
 

@@ -16,6 +16,7 @@ __all__ = [
     "FileFormatError",
     "InadmissibleError",
     "NonFiniteError",
+    "SeedError",
     "ShapeError",
     "TooFewPointsError",
     "TooManyPointsError",
@@ -33,6 +34,10 @@ class TooManyPointsError(ExactMeshError):
 
 class CollinearPointsError(ExactMeshError):
     """All points lie on one line, or are one point: there is no triangle."""
+
+
+class SeedError(ExactMeshError):
+    """A seed is no integer, or a negative one."""
 
 
 class TopologyError(ExactMeshError):

@@ -57,6 +57,6 @@ def triangles_of(ring: EdgeArray, org: EdgeArray, slot: EdgeArray, number: IntAr
     triangles = np.empty(len(slot), dtype=np.int32)
     neighbors = np.empty(len(slot), dtype=np.int32)
     m = _collect(ring, org, slot, number, triangles, neighbors)
-    triangles.resize(3 * m, refcheck=False)  # the room of the other faces goes back
-    neighbors.resize(3 * m, refcheck=False)
-    return triangles.reshape(m, 3), neighbors.reshape(m, 3)
+    triangles.resize((m, 3), refcheck=False)  # the room of the other faces goes back, and no base is left to write to
+    neighbors.resize((m, 3), refcheck=False)
+    return triangles, neighbors

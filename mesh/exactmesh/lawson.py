@@ -15,9 +15,10 @@ from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, Sign
+from exactmesh.chunks import chunk_size
 from exactmesh.connectivity import neighbors_of, rings_of
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
-from exactmesh.errors import InadmissibleError, TopologyError
+from exactmesh.errors import InadmissibleError, TooFewPointsError, TopologyError
 from exactmesh.extract import OUTER, triangles_of
 from exactmesh.ids import OUTSIDE
 from exactmesh.quadedge import Edge, Primal
@@ -26,7 +27,7 @@ from exactmesh.verify import Property, verify
 
 __all__ = ["flip", "is_flippable", "is_locally_delaunay", "lawson"]
 
-_CHUNK = 1 << 20  # edges tested between two looks at Ctrl-C
+_CHUNK = 1 << 19  # edges tested between two looks at Ctrl-C, where predicates are fast
 
 _TRIANGULATION = (
     Property.FINITE,
@@ -143,6 +144,19 @@ def flip_until_delaunay(
     return height, flips
 
 
+@np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
+def _flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, hull: npt.NDArray[np.bool_]) -> int:
+    """Flip until every edge but those of the hull is locally Delaunay; return the number of flips."""
+    edges = len(hull)
+    stack, waiting = np.arange(edges, dtype=np.int32), np.ones(edges, dtype=np.bool_)
+    height, flips, limit = edges, 0, chunk_size(k, _CHUNK)
+    while height > 0:
+        height, more = flip_until_delaunay(k, xy, ring, org, hull, stack, waiting, height, limit)
+        flips += int(more)
+        raise_if_interrupted()
+    return flips
+
+
 def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
     """Return THE Delaunay triangulation of the points, by flips from any triangulation of their hull.
 
@@ -155,7 +169,9 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
         start; ``work.flips`` is the number of flips.
 
     Raises:
-        InadmissibleError: the triangles are no such triangulation; ``report`` is the verifier's, with witnesses.
+        InadmissibleError: the triangles are no such triangulation; ``report`` is the verifier's, with witnesses, and
+            ``indices`` names the triangles of the first, or the points where it has none.
+        TooFewPointsError: fewer than three points.
         NonFiniteError, CoordinateError, ShapeError: as for :func:`exactmesh.delaunay`.
 
     At most n (n - 1) / 2 flips. Reference [Lawson 1977].
@@ -166,22 +182,21 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
     (1, [[0, 1, 3], [1, 2, 3]])
     """
     given = finite_points(points).copy()
+    if len(given) < 3:
+        raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
     corners = vertex_indices(triangles)
     report = verify(given, corners, claims=_TRIANGULATION)
     if not report.ok:
+        fault = report.violations[0]
         raise InadmissibleError(
-            f"the triangles are no triangulation of the points' hull: {report.violations[0].message}", report=report
+            f"the triangles are no triangulation of the points' hull: {fault.message}",
+            report=report,
+            indices=fault.triangles or fault.vertices,
         )
     ring, org, face = rings_of(corners, neighbors_of(corners))
     xy, k = scaled_into_window(given)
-    edges = len(ring) // 4
     hull = (face[0::2] == OUTSIDE) | (face[1::2] == OUTSIDE)
-    stack, waiting = np.arange(edges, dtype=np.int32), np.ones(edges, dtype=np.bool_)
-    height, flips = edges, 0
-    while height > 0:
-        height, more = flip_until_delaunay(k, xy, ring, org, hull, stack, waiting, height, _CHUNK)
-        flips += int(more)
-        raise_if_interrupted()
+    flips = _flip_all(xy, k, ring, org, hull)
     slot = np.where(face.reshape(-1, 2)[:, ::-1].reshape(-1) == OUTSIDE, OUTER, -1).astype(np.int32)
     same = np.arange(len(given), dtype=np.int32)
     found, neighbors = triangles_of(ring, org, slot, same)

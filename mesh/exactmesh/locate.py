@@ -1,30 +1,47 @@
 """Point location in a finished triangulation: a visibility walk, query after query along a space-filling curve.
 
-The walk starts each triangle at a side that changes pseudo-randomly, so it ends (with probability one) in every
-triangulation of a convex hull, Delaunay or not. Reference [Devillers 2002].
+In a Delaunay triangulation (perturbed or not) the walk enters no triangle twice [Edelsbrunner 1990]. In others it may
+turn in a circle, though hardly ever, since it starts each triangle at another side [Devillers 2002]; a walk of more
+steps than there are triangles gives way to a look at every triangle, so that location ends in any triangulation.
 """
 
 import numpy as np
 
-from exactkernel.context import Context, make_context
+from exactkernel.context import Context, scaled_into_window
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
+from exactmesh.chunks import chunk_size
 from exactmesh.ordering import IndexArray, insertion_order
 
 __all__ = ["locate_points"]
 
-_CHUNK = 1 << 17
+_CHUNK = 1 << 17  # queries between two looks at Ctrl-C, where predicates are fast
+
+
+@jit
+def scan(k: Context, points: FloatArray, triangles: IntArray, x: float, y: float) -> int:
+    """Return the first triangle whose closure contains (x, y), or -1: outside the hull."""
+    for t in range(len(triangles)):
+        inside = True
+        for i in range(3):
+            a, b = triangles[t, i], triangles[t, (i + 1) % 3]
+            if orient2d_adaptive(k, points[a, 0], points[a, 1], points[b, 0], points[b, 1], x, y) < 0:
+                inside = False
+                break
+        if inside:
+            return t
+    return -1
 
 
 @jit
 def _walk(
     k: Context, points: FloatArray, triangles: IntArray, neighbors: IntArray, start: int, x: float, y: float
 ) -> int:
-    """Return the triangle whose closure contains (x, y), or -1 - t if the walk left the hull from triangle t."""
+    """Return the triangle whose closure contains (x, y), or -1 - t for the triangle t that it left over the hull."""
     t, came_from, side = start, -1, 0
-    while True:
+    for _ in range(len(triangles)):
         side = (side * 5 + t + 1) % 3  # any side may be the first to be tested
         leave = -1
         for turn in range(3):
@@ -41,6 +58,7 @@ def _walk(
         if neighbors[t, leave] < 0:
             return -1 - t
         came_from, t = t, neighbors[t, leave]
+    return scan(k, points, triangles, x, y)
 
 
 @jit
@@ -56,15 +74,17 @@ def _walk_all(
     return start
 
 
+@np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
 def locate_points(points: FloatArray, triangles: IntArray, neighbors: IntArray, queries: FloatArray) -> IntArray:
     """Return the triangle of each query (finite), int32, -1 outside the hull. O(k log k) and short walks."""
     found = np.empty(len(queries), dtype=np.int32)
     if len(queries) == 0:
         return found
-    k = make_context(np.concatenate([points, queries]))
-    order = insertion_order(queries, seed=0)
-    start = 0
-    for first in range(0, len(order), _CHUNK):
-        start = _walk_all(k, points, triangles, neighbors, queries, order[first : first + _CHUNK], start, found)
+    scaled, k = scaled_into_window(np.concatenate([points, queries]))
+    corners, sought = scaled[: len(points)], scaled[len(points) :]
+    order = insertion_order(sought, seed=0)
+    start, step = 0, chunk_size(k, _CHUNK)
+    for first in range(0, len(order), step):
+        start = _walk_all(k, corners, triangles, neighbors, sought, order[first : first + step], start, found)
         raise_if_interrupted()
     return found

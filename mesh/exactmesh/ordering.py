@@ -5,11 +5,14 @@ short and each cache line warm. The order decides only how fast the answer comes
 round here as it likes. Reference [Amenta 2003], [Hilbert 1891].
 """
 
+import operator
+
 import numpy as np
 import numpy.typing as npt
 
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray
+from exactmesh.errors import SeedError
 
 __all__ = ["IndexArray", "insertion_order"]
 
@@ -87,8 +90,14 @@ def _pack_keys(
 
 def _rounds(n: int, seed: int) -> IndexArray:
     """Return the BRIO round of each point: the last has 15/16 of all, the one before 15/16 of the rest, and so on."""
+    try:
+        chosen = operator.index(seed)
+    except TypeError:
+        raise SeedError(f"seed={seed!r} is no integer") from None
+    if chosen < 0:
+        raise SeedError(f"seed={chosen} is negative")
     rounds = max(0, (n // _FIRST_ROUND).bit_length() - 1) // _ROUND_BITS
-    coins = np.random.default_rng(seed).random(n, dtype=np.float32)
+    coins = np.random.default_rng(chosen).random(n, dtype=np.float32)
     group = np.full(n, rounds, dtype=np.int64)
     for level in range(1, rounds + 1):
         group -= coins < 2.0 ** (-_ROUND_BITS * level)
@@ -125,6 +134,9 @@ def _along_curves(
 
 def insertion_order(xy: FloatArray, seed: int) -> IndexArray:
     """Return the indices of the points, float64 (n, 2), in the order in which to insert them. O(n log n).
+
+    Raises:
+        SeedError: the seed is no integer, or negative.
 
     Points that crowd one cell are sorted again, along a curve in their own bounding box: each level divides the box by
     2^12 at least, so a few levels reach any cluster, and some hundred any doubles.

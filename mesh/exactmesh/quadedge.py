@@ -26,9 +26,9 @@ from exactkernel.arrays import vertex_indices
 from exactkernel.jit import jit
 from exactkernel.types import IntArray
 from exactmesh import edgealgebra as algebra
-from exactmesh.connectivity import neighbors_of, rings_of
+from exactmesh.connectivity import check_corners, check_neighbors, neighbors_of, rings_of
 from exactmesh.edgealgebra import EdgeArray
-from exactmesh.errors import TopologyError
+from exactmesh.errors import ShapeError, TopologyError
 from exactmesh.extract import OUTER, triangles_of
 from exactmesh.ids import OUTSIDE, Face, QuarterEdge, Vertex
 
@@ -188,6 +188,10 @@ class Edge(Generic[Kind]):
                 return
 
 
+def _is_flat_int32(array: object) -> bool:
+    return isinstance(array, np.ndarray) and array.dtype == np.int32 and array.ndim == 1 and array.flags.carray
+
+
 @jit
 def _first_broken(ring: EdgeArray, count: int) -> int:
     """Return the first quarter-edge that breaks an axiom of an edge algebra, or -1."""
@@ -259,14 +263,19 @@ class QuadEdge:
             face: int32 (2 k,), ``face[q >> 1]`` the origin of the dual quarter-edge q.
 
         Raises:
+            ShapeError: an array is not one-dimensional, contiguous, writable and int32.
             TopologyError: the lengths do not agree, or the ring breaks the axioms.
         """
+        for name, array in (("ring", ring), ("vertex", vertex), ("face", face)):
+            if not _is_flat_int32(array):
+                raise ShapeError(f"{name} must be a one-dimensional, contiguous and writable array of int32")
         if len(ring) % 4 or not 2 * len(vertex) == 2 * len(face) == len(ring):
             raise TopologyError(f"{len(ring)} ring entries need half as many origins, not {len(vertex)}, {len(face)}")
         self = cls()
         self._ring, self._vertex, self._face = ring, vertex, face
         self._count = len(ring) // 4
         self.check()
+        self._free = (4 * np.flatnonzero(ring[::4] == _FREE)).tolist()
         return self
 
     @classmethod
@@ -278,7 +287,8 @@ class QuadEdge:
             neighbors: as in :class:`Triangulation`, if they are known.
 
         Raises:
-            TopologyError: a directed edge is in two triangles.
+            TopologyError: a directed edge is in two triangles, a corner is negative or repeated, or the neighbors are
+                not mutual; ``indices`` names the triangles.
             ShapeError: not an integer array of shape (m, 3).
 
         O(m log m), O(m) with neighbors.
@@ -288,7 +298,12 @@ class QuadEdge:
         (4, 5, 3)
         """
         corners = vertex_indices(triangles)
-        return cls.from_arrays(*rings_of(corners, neighbors_of(corners) if neighbors is None else neighbors))
+        check_corners(corners)
+        if neighbors is None:
+            return cls.from_arrays(*rings_of(corners, neighbors_of(corners)))
+        given = vertex_indices(neighbors, "neighbors")
+        check_neighbors(corners, given)
+        return cls.from_arrays(*rings_of(corners, given))
 
     def triangles(self) -> IntArray:
         """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""
@@ -296,7 +311,7 @@ class QuadEdge:
         after = self._ring[(2 * half) ^ 3] ^ 3  # left_next of every primal edge, nonsense for deleted ones
         live = self._ring[2 * half] != _FREE
         after[~live] = 0
-        triangular = after[after[after >> 1] >> 1] == 2 * half
+        triangular = (after[after[after >> 1] >> 1] == 2 * half) & (after != 2 * half)  # a loop comes back as well
         wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
         slot = np.where(wanted, -1, OUTER).astype(np.int32)
         same = np.arange(self._vertex.max(initial=0) + 1, dtype=np.int32)
@@ -343,12 +358,12 @@ class QuadEdge:
 
     def set_org(self, edge: Edge[Primal], vertex: Vertex) -> None:
         """Let the edge start at that vertex; the others of its ring are not touched."""
-        self._own(edge)
+        self._own_primal(edge)
         self._vertex[edge.index >> 1] = vertex
 
     def set_left(self, edge: Edge[Primal], face: Face) -> None:
         """Let that face be on the left of the edge; the other edges round it are not touched."""
-        self._own(edge)
+        self._own_primal(edge)
         self._face[algebra.inv_rot(edge.index) >> 1] = face
 
     def _own(self, *edges: Edge[Primal] | Edge[Dual]) -> None:
@@ -356,6 +371,12 @@ class QuadEdge:
             if edge.structure is not self:
                 raise TopologyError(f"edge {edge.index >> 2} belongs to another quad-edge", indices=[edge.index])
             self.ring_of(edge.index)
+
+    def _own_primal(self, *edges: Edge[Primal]) -> None:
+        self._own(*edges)
+        for edge in edges:
+            if edge.index & 1:
+                raise TopologyError(f"quarter-edge {edge.index} is a dual edge", indices=[edge.index])
 
     def make_edge(self, org: Vertex = NO_VERTEX, dest: Vertex = NO_VERTEX) -> Edge[Primal]:
         """Return a new edge, by itself on a sphere: two vertices, one face."""
@@ -372,7 +393,7 @@ class QuadEdge:
         return Edge(self, QuarterEdge(q))
 
     def _grow(self) -> None:
-        room = len(self._ring) // 4
+        room = max(1, len(self._ring) // 4)
         if room > 2**28:
             raise TopologyError("a quad-edge holds at most 2^29 edges")
         self._ring = np.concatenate([self._ring, np.full(4 * room, _FREE, dtype=np.int32)])
@@ -394,6 +415,10 @@ class QuadEdge:
               onext(b) = b'              onext(b) = a'
         """
         self._own(a, b)
+        if (a.index ^ b.index) & 1:
+            raise TopologyError(
+                f"quarter-edges {a.index} and {b.index}: one is primal, one dual", indices=[a.index, b.index]
+            )
         algebra.splice(self._ring, a.index, b.index)
 
     def connect(self, a: Edge[Primal], b: Edge[Primal]) -> Edge[Primal]:
@@ -403,7 +428,7 @@ class QuadEdge:
           |                  ^
         b v       left       | a
         """
-        self._own(a, b)
+        self._own_primal(a, b)
         new = self.make_edge(a.dest, b.org)
         self.splice(new, a.lnext)
         self.splice(new.sym, b)
@@ -411,7 +436,7 @@ class QuadEdge:
 
     def delete_edge(self, edge: Edge[Primal]) -> None:
         """Take the edge out; its two faces become one. Handles on it are dead from here on."""
-        self._own(edge)
+        self._own_primal(edge)
         self.splice(edge, edge.oprev)
         self.splice(edge.sym, edge.sym.oprev)
         q = edge.index & ~3
@@ -425,11 +450,12 @@ class QuadEdge:
         where it was; twice, it is backwards.
 
         Raises:
-            TopologyError: the faces left and right are not two triangles.
+            TopologyError: the faces left and right are not two different triangles.
         """
-        self._own(edge)
+        self._own_primal(edge)
         for side in (edge, edge.sym):
-            if side.lnext.lnext.lnext != side or side.lnext == side:
+            corner = side.lnext.lnext
+            if corner.lnext != side or corner == side or edge.sym in (edge.lnext, corner):
                 raise TopologyError(
                     f"edge {edge.index >> 2} ({edge.org} -> {edge.dest}) is not between two triangles",
                     indices=[edge.index],

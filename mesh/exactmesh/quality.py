@@ -6,7 +6,7 @@ import numpy as np
 
 from exactkernel.types import FloatArray, IntArray
 
-__all__ = ["Statistics", "angles_of", "areas_of", "statistics_of"]
+__all__ = ["Statistics", "angles_of", "areas_of", "lengths_of", "statistics_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,23 +33,43 @@ class Statistics:
     longest_edge: float
 
 
-def _sides(points: FloatArray, triangles: IntArray) -> FloatArray:
-    """Return the vectors of the edges opposite to each corner, (m, 3, 2)."""
+def _sides(points: FloatArray, triangles: IntArray) -> tuple[FloatArray, int]:
+    """Return the vectors of the edges opposite to each corner, (m, 3, 2), halved so many times (0 or 1)."""
     corners = points[triangles]
+    halvings = int(np.abs(points).max(initial=0.0) >= 2.0**1023)  # a difference might overflow
+    corners = np.ldexp(corners, -halvings)
     sides: FloatArray = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
-    return sides
+    return sides, halvings
+
+
+def _normalised_sides(points: FloatArray, triangles: IntArray) -> tuple[FloatArray, IntArray]:
+    """Return the sides and the binary exponent by which those of each triangle were divided: below 1, no square of
+    the largest over- or underflows."""
+    sides, halvings = _sides(points, triangles)
+    exponents = np.frexp(np.abs(sides).max(axis=(1, 2), initial=0.0))[1]
+    return np.ldexp(sides, -exponents[:, None, None]), exponents + halvings
 
 
 def areas_of(points: FloatArray, triangles: IntArray) -> FloatArray:
     """Return the signed area of each triangle, float64 (m,), positive if counterclockwise."""
-    sides = _sides(points, triangles)
-    areas: FloatArray = 0.5 * (sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
-    return areas
+    sides, exponents = _normalised_sides(points, triangles)
+    areas = 0.5 * (sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
+    with np.errstate(over="ignore", under="ignore"):
+        scaled: FloatArray = np.ldexp(areas, 2 * exponents)
+    return scaled
+
+
+def lengths_of(points: FloatArray, triangles: IntArray) -> FloatArray:
+    """Return the length of the edge opposite to each corner, float64 (m, 3)."""
+    sides, halvings = _sides(points, triangles)
+    with np.errstate(over="ignore"):
+        lengths: FloatArray = np.ldexp(np.hypot(sides[..., 0], sides[..., 1]), halvings)
+    return lengths
 
 
 def angles_of(points: FloatArray, triangles: IntArray) -> FloatArray:
     """Return the angle at each corner in degrees, float64 (m, 3)."""
-    sides = _sides(points, triangles)
+    sides, _ = _normalised_sides(points, triangles)
     after, before = np.roll(sides, -1, axis=1), np.roll(sides, -2, axis=1)
     cross = np.abs(after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0])
     angles: FloatArray = np.degrees(np.arctan2(cross, -(after * before).sum(axis=2)))
@@ -64,19 +84,15 @@ def statistics_of(points: FloatArray, triangles: IntArray, edges: int, hull_vert
     >>> figures.area, figures.longest_edge, round(figures.smallest_angle, 2)
     (6.0, 5.0, 36.87)
     """
-    scale = float(np.ldexp(1.0, int(np.frexp(np.abs(points).max())[1]) - 1))  # no square over- or underflows
-    unit = points / scale
-    sides = _sides(unit, triangles)
-    lengths = np.hypot(sides[..., 0], sides[..., 1]) * scale
-    with np.errstate(over="ignore", under="ignore"):
-        areas = areas_of(unit, triangles) * scale * scale
-    angles = angles_of(unit, triangles)
+    areas, lengths, angles = (measure(points, triangles) for measure in (areas_of, lengths_of, angles_of))
+    with np.errstate(over="ignore"):
+        area = float(areas.sum())
     return Statistics(
         vertices=len(points),
         triangles=len(triangles),
         edges=edges,
         hull_vertices=hull_vertices,
-        area=float(areas.sum()),
+        area=area,
         smallest_area=float(areas.min()),
         largest_area=float(areas.max()),
         smallest_angle=float(angles.min()),

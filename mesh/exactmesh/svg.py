@@ -1,5 +1,7 @@
 """A small picture for notebooks; :mod:`exactmesh.plot` makes the good ones."""
 
+import numpy as np
+
 from exactkernel.types import FloatArray, IntArray
 
 __all__ = ["svg_of"]
@@ -10,10 +12,10 @@ _MOST_EDGES = 20_000  # a notebook stays quick; the caption says what was left o
 
 def svg_of(points: FloatArray, edges: IntArray) -> str:
     """Return the edges as a self-contained SVG, y up. Beyond 20,000 edges only the first ones are drawn."""
-    half = 0.5 * points  # the whole extent may overflow
-    low, high = half.min(axis=0), half.max(axis=0)
+    unit = np.ldexp(points, -int(np.frexp(np.abs(points).max())[1]))  # the extent neither over- nor underflows
+    low, high = unit.min(axis=0), unit.max(axis=0)
     extent = float((high - low).max())
-    xy = (half - low) / extent * _WIDTH
+    xy = (unit - low) / extent * _WIDTH
     height = float((high - low)[1]) / extent * _WIDTH
     drawn = edges[:_MOST_EDGES]
     path = "".join(

@@ -61,6 +61,10 @@ class Triangulation:
     representative: IntArray
     work: Work = field(compare=False)
 
+    def __reduce__(self) -> "tuple[type[Triangulation], tuple[FloatArray, IntArray, IntArray, IntArray, Work]]":
+        # copies and pickles are made anew: numpy does not pass on that an array is read-only
+        return Triangulation, (self.points, self.triangles, self.neighbors, self.representative, self.work)
+
     def __post_init__(self) -> None:
         for array in (self.points, self.triangles, self.neighbors, self.representative):
             array.setflags(write=False)

@@ -1,0 +1,618 @@
+"""M1: the edge algebra, on every state that splices reach; the typed quad-edge against a model."""
+
+import re
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from mypy import api as mypy
+from proofs_tests.enumeration import grid, primal_permutations, reachable_states, triangulations
+
+from exactkernel.jit import COMPILED
+from exactkernel.types import IntArray
+from exactmesh import Edge, Face, Primal, QuadEdge, QuarterEdge, Vertex
+from exactmesh import edgealgebra as algebra
+from exactmesh.connectivity import neighbors_of, rings_of
+from exactmesh.errors import ShapeError, TopologyError
+from exactmesh.ids import OUTSIDE
+
+ALGEBRA = pytest.mark.obligation(
+    "M1", "the edge algebra: rot^4 = e, splice is an involution, Euler; in every state of at most four edges"
+)
+
+Permutation = list[int]
+
+
+def inverse(permutation: Permutation) -> Permutation:
+    result = [0] * len(permutation)
+    for q, after in enumerate(permutation):
+        result[after] = q
+    return result
+
+
+def cycles(permutation: Permutation, start: Iterator[int] | range) -> list[set[int]]:
+    """Return the cycles of a permutation, by walking each."""
+    found: list[set[int]] = []
+    for q in start:
+        if not any(q in cycle for cycle in found):
+            cycle = [q]
+            while permutation[cycle[-1]] != q:
+                cycle.append(permutation[cycle[-1]])
+            found.append(set(cycle))
+    return found
+
+
+def components(permutation: Permutation) -> list[set[int]]:
+    """Return the sets of primal quarter-edges that onext and sym connect."""
+    pieces = [{q, q ^ 2} for q in range(0, len(permutation), 4)]
+    for ring in cycles(permutation, range(0, len(permutation), 2)):
+        touched = [piece for piece in pieces if piece & ring]
+        pieces = [piece for piece in pieces if not piece & ring] + [set().union(*touched)]
+    return pieces
+
+
+def left_faces(onext: Permutation) -> list[set[int]]:
+    """The cycles of lnext, by its definition without the dual: go to the end, turn clockwise."""
+    oprev = inverse(onext)
+    lnext = [oprev[q ^ 2] for q in range(len(onext))]
+    return cycles(lnext, range(0, len(onext), 2))
+
+
+@pytest.fixture(scope="module")
+def states() -> list[IntArray]:
+    """Every reachable ring of 1, 2, 3 and, compiled, 4 edges."""
+    return [reachable_states(k) for k in range(1, 5 if COMPILED else 4)]
+
+
+@ALGEBRA
+class TestEveryState:
+    """From k isolated edges splices reach (2k)! states: every permutation of the primal quarter-edges as onext, each
+    with its one dual. Every one is a subdivision of closed orientable surfaces: V - E + F = 2 - 2 genus."""
+
+    def test_published_counts(self, states: list[IntArray]) -> None:
+        counts = [2, 24, 720, 40320][: len(states)]
+        assert [len(found) for found in states] == counts
+        assert [len(primal_permutations(found)) for found in states] == counts
+
+    def test_axioms_and_counts(self, states: list[IntArray]) -> None:
+        for ring in (ring for found in states for ring in found):
+            labels = np.zeros(len(ring) // 2, dtype=np.int32)
+            surface = QuadEdge.from_arrays(ring, labels, labels.copy())  # checks the axioms
+            onext = ring.tolist()
+            vertices = len(cycles(onext, range(0, len(ring), 2)))
+            assert surface.counts() == (vertices, len(ring) // 4, len(left_faces(onext)))
+
+    def test_euler(self, states: list[IntArray]) -> None:
+        genera = set()
+        for onext in (ring.tolist() for ring in states[2]):
+            rings, faces = cycles(onext, range(0, len(onext), 2)), left_faces(onext)
+            for piece in components(onext):
+                v, f = sum(ring <= piece for ring in rings), sum(face <= piece for face in faces)
+                twice_genus = 2 - (v - len(piece) // 2 + f)
+                assert twice_genus >= 0
+                assert twice_genus % 2 == 0
+                genera.add(twice_genus // 2)
+        assert genera == {0, 1}  # three edges make a torus, too
+
+    def test_euler_can_fail(self) -> None:
+        """The ring of a twisted edge (onext leads to the same edge flipped over) is refused: nothing but orientable
+        surfaces passes."""
+        ring = np.array([0, 1, 2, 3], dtype=np.int32)  # the dual not turned: a projective plane has V - E + F = 1
+        labels = np.zeros(2, dtype=np.int32)
+        with pytest.raises(TopologyError):
+            QuadEdge.from_arrays(ring, labels, labels.copy())
+
+
+@ALGEBRA
+class TestOperators:
+    """rot has order four, sym is its square, and each operator is what it is without the dual: with oprev the inverse
+    of onext, lnext = oprev sym, dnext = sym onext sym, and so on; each next is the inverse of its prev."""
+
+    @pytest.mark.parametrize("k", [1, 2, 3])
+    def test_definitions(self, k: int, states: list[IntArray]) -> None:
+        for ring in states[k - 1]:
+            onext = ring.tolist()
+            oprev = inverse(onext)
+            for q in range(4 * k):
+                expected = {
+                    algebra.onext: onext[q],
+                    algebra.oprev: oprev[q],
+                    algebra.lnext: oprev[q ^ 2],
+                    algebra.lprev: onext[q] ^ 2,
+                    algebra.rnext: oprev[q] ^ 2,
+                    algebra.rprev: onext[q ^ 2],
+                    algebra.dnext: onext[q ^ 2] ^ 2,
+                    algebra.dprev: oprev[q ^ 2] ^ 2,
+                }
+                assert {operator: operator(ring, q) for operator in expected} == expected
+                if q % 2 == 0:
+                    assert algebra.left_next(ring, q) == oprev[q ^ 2]
+
+    def test_turns(self) -> None:
+        for q in range(16):
+            half = algebra.rot(algebra.rot(q))
+            assert half == algebra.sym(q) == q ^ 2
+            assert algebra.rot(algebra.rot(half)) == q
+            assert algebra.inv_rot(algebra.rot(q)) == algebra.rot(algebra.inv_rot(q)) == q
+            assert algebra.rot(q) // 4 == q // 4
+            assert (algebra.rot(q) - q) % 4 == 1
+
+    def test_handles_follow_the_operators(self) -> None:
+        surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+        ring = surface.ring_of(QuarterEdge(0))
+        for edge in surface.edges():
+            for handle in (edge, edge.sym):
+                for name in ("onext", "oprev", "dnext", "dprev", "lnext", "lprev", "rnext", "rprev"):
+                    assert getattr(handle, name).index == getattr(algebra, name)(ring, handle.index)
+                    assert getattr(handle.rot, name).index == getattr(algebra, name)(ring, handle.rot.index)
+                assert handle.rot.inv_rot == handle.inv_rot.rot == handle
+                assert handle.rot.rot == handle.sym
+                assert (handle.rot.org, handle.rot.dest) == (handle.right, handle.left)
+                assert (handle.rot.right, handle.rot.left) == (handle.dest, handle.org)
+                assert {e.org for e in handle.orbit()} == {handle.org}
+                assert {e.left for e in handle.face()} == {handle.left}
+
+
+@ALGEBRA
+class TestSplice:
+    """Splice is its own inverse; it joins two origins or cuts one, and the same with the left faces."""
+
+    @pytest.mark.parametrize("k", [1, 2, 3])
+    def test_involution(self, k: int, states: list[IntArray]) -> None:
+        for ring in states[k - 1]:
+            onext = ring.tolist()
+            rings, faces = cycles(onext, range(0, 4 * k, 2)), left_faces(onext)
+            for a, b in combinations(range(0, 4 * k, 2), 2):
+                after = ring.copy()
+                algebra.splice(after, a, b)
+                same_origin = any({a, b} <= cycle for cycle in rings)
+                same_face = any({a, b} <= cycle for cycle in faces)
+                assert len(cycles(after.tolist(), range(0, 4 * k, 2))) == len(rings) + (1 if same_origin else -1)
+                assert len(left_faces(after.tolist())) == len(faces) + (1 if same_face else -1)
+                algebra.splice(after, a, b)
+                assert (after == ring).all()
+
+    def test_primal_with_dual_is_refused(self) -> None:
+        surface = QuadEdge()
+        edge = surface.make_edge()
+        dual: Edge[Primal] = Edge(surface, edge.rot.index)  # a handle that lies about its kind
+        for operation in (lambda: surface.splice(edge, dual), lambda: surface.connect(edge, dual)):
+            with pytest.raises(TopologyError):
+                operation()
+        for method in (surface.delete_edge, surface.swap, lambda e: surface.set_org(e, Vertex(0))):
+            with pytest.raises(TopologyError):
+                method(dual)
+        surface.check()
+
+
+def breaks_axioms(ring: Permutation, q: int) -> bool:
+    """Whether onext of q leaves the edges, mixes primal with dual, or e rot onext rot onext differs from e."""
+    after = ring[q]
+    if not 0 <= after < len(ring) or (after - q) % 2:
+        return True
+    turned = after // 4 * 4 + (after + 1) % 4
+    back = ring[turned]
+    return back // 4 * 4 + (back + 1) % 4 != q
+
+
+@ALGEBRA
+class TestCheck:
+    """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
+
+    def test_every_corruption(self, states: list[IntArray]) -> None:
+        labels = np.zeros(4, dtype=np.int32)
+        for ring in states[1]:
+            for q in range(len(ring)):
+                for wrong in (value for value in range(-2, len(ring) + 2) if value != ring[q]):
+                    corrupt = ring.copy()
+                    corrupt[q] = wrong
+                    with pytest.raises(TopologyError, match=r"quarter-edge \d+") as raised:
+                        QuadEdge.from_arrays(corrupt, labels, labels.copy())
+                    entries = corrupt.tolist()
+                    named = raised.value.indices[0]
+                    if -1 not in entries:
+                        assert named == next(q for q in range(len(entries)) if breaks_axioms(entries, q))
+                    else:  # a hole: whoever leads there, or lies beside it
+                        assert breaks_axioms(entries, named) or entries[named] == -1 or entries[entries[named]] == -1
+
+
+def small_surfaces() -> Iterator[QuadEdge]:
+    for triangles in triangulations(grid(3, 3)):
+        yield QuadEdge.from_triangles(triangles)
+
+
+def copied(surface: QuadEdge) -> QuadEdge:
+    """Return an equal quad-edge, for triangulations that fill their arrays."""
+    edges = [*surface.edges()]
+    ring = surface.ring_of(QuarterEdge(0)).copy()
+    vertex, face = np.empty(len(ring) // 2, dtype=np.int32), np.empty(len(ring) // 2, dtype=np.int32)
+    for edge in edges:
+        for e in (edge, edge.sym):
+            vertex[e.index >> 1] = e.org
+            face[e.rot.index >> 1] = e.rot.org
+    return QuadEdge.from_arrays(ring, vertex, face)
+
+
+def origins(surface: QuadEdge) -> list[tuple[int, int]]:
+    return [(edge.org, edge.dest) for edge in surface.edges()]
+
+
+def swap_by_splices(surface: QuadEdge, e: Edge[Primal]) -> None:
+    """Guibas and Stolfi's definition, word for word."""
+    a, b = e.oprev, e.sym.oprev
+    surface.splice(e, a)
+    surface.splice(e.sym, b)
+    surface.splice(e, a.lnext)
+    surface.splice(e.sym, b.lnext)
+    surface.set_org(e, a.dest)
+    surface.set_org(e.sym, b.dest)
+
+
+def inner_edges(surface: QuadEdge) -> list[QuarterEdge]:
+    return [q.index for e in surface.edges() if OUTSIDE not in (e.left, e.right) for q in (e, e.sym)]
+
+
+@ALGEBRA
+class TestDerivedOperations:
+    """swap, split_face and delete_edge are what make_edge and splice make of them, entry by entry."""
+
+    def test_swap_is_four_splices(self) -> None:
+        for surface in small_surfaces():
+            for index in inner_edges(surface):
+                ours, theirs = copied(surface), copied(surface)
+                ours.swap(ours.edge(index))
+                swap_by_splices(theirs, theirs.edge(index))
+                assert (ours.ring_of(index) == theirs.ring_of(index)).all()
+                assert origins(ours) == origins(theirs)
+                ours.check()
+                for e in ours.edges():
+                    for side in (e, e.sym):
+                        assert {f.left for f in side.face()} == {side.left}
+
+    def test_the_comparison_sees_a_wrong_swap(self) -> None:
+        surface = next(small_surfaces())
+        index = inner_edges(surface)[0]
+        ours, theirs = copied(surface), copied(surface)
+        ours.swap(ours.edge(index))
+        ours.swap(ours.edge(index))  # now it is the first edge backwards
+        assert not (ours.ring_of(index) == theirs.ring_of(index)).all()
+        assert ours.edge(index).org == theirs.edge(index).dest
+        ours.swap(ours.edge(index))
+        ours.swap(ours.edge(index))
+        assert (ours.ring_of(index) == theirs.ring_of(index)).all()
+
+    def test_swap_of_two_triangles_on_a_sphere(self) -> None:
+        """The faces share all three edges; the swapped edge becomes a loop at the third vertex."""
+        ours = QuadEdge.from_triangles([(0, 1, 2), (2, 1, 0)])
+        theirs = copied(ours)
+        ours.swap(ours.edge(0))
+        swap_by_splices(theirs, theirs.edge(0))
+        assert (ours.ring_of(QuarterEdge(0)) == theirs.ring_of(QuarterEdge(0))).all()
+        assert ours.edge(0).org == ours.edge(0).dest
+        ours.check()
+
+    def test_swap_refuses_what_is_not_between_two_triangles(self) -> None:
+        surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+        before = surface.ring_of(QuarterEdge(0)).copy()
+        for edge in surface.edges():
+            if OUTSIDE in (edge.left, edge.right):
+                with pytest.raises(TopologyError) as raised:
+                    surface.swap(edge)
+                assert raised.value.indices == (edge.index,)
+        assert (surface.ring_of(QuarterEdge(0)) == before).all()
+
+    def test_swap_refuses_one_triangle_on_both_sides(self) -> None:
+        """A loop with an edge inside: the face e, e.sym, loop is a triangle and lies on both sides of e."""
+        surface = QuadEdge()
+        loop, e = surface.make_edge(Vertex(0), Vertex(0)), surface.make_edge(Vertex(0), Vertex(1))
+        surface.splice(loop, loop.sym)
+        surface.splice(loop, e)
+        sides = [q for q in (e, e.sym) if q.lnext.lnext.lnext == q]
+        assert len(sides) == 2
+        with pytest.raises(TopologyError):
+            surface.swap(e)
+        surface.check()
+
+    def test_split_face(self) -> None:
+        triangles = np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32)
+        for start in range(0, 20, 2):
+            rings = rings_of(triangles, neighbors_of(triangles))
+            surface = QuadEdge.from_arrays(*rings)
+            e = surface.edge(start)
+            if e.left == OUTSIDE:
+                continue
+            room = (
+                np.concatenate([rings[0], np.empty(12, np.int32)]),
+                np.concatenate([rings[1], np.empty(6, np.int32)]),
+            )
+            algebra.split_face(*room, start, 20, 4)
+            corners = list(e.face())
+            spokes = [surface.make_edge(Vertex(4), corner.org) for corner in corners]
+            for corner, spoke, following in zip(corners, spokes, [None, *spokes], strict=False):
+                if following is not None:
+                    surface.splice(following, spoke)
+                surface.splice(corner, spoke.sym)
+            assert surface.ring_of(QuarterEdge(0))[:32].tolist() == room[0].tolist()
+            assert [v for edge in surface.edges() for v in (edge.org, edge.dest)] == room[1].tolist()
+            assert [edge.dest for edge in spokes[0].orbit()] == [corner.org for corner in corners]
+
+    def test_delete_undoes_connect(self) -> None:
+        for surface in small_surfaces():
+            index = inner_edges(surface)[0]
+            e = surface.edge(index)
+            a, b = e.sym.lnext.lnext, e.lnext  # ends of the removed diagonal's quadrilateral
+            surface.delete_edge(e)
+            assert surface.counts()[1] == len(surface) == 15
+            before = surface.ring_of(a.index).copy()
+            new = surface.connect(b, a)
+            assert (new.org, new.dest) == (b.dest, a.org)
+            surface.delete_edge(new)
+            assert (surface.ring_of(a.index) == before).all()
+            surface.check()
+            with pytest.raises(TopologyError, match="deleted"):
+                _ = new.onext
+
+    def test_a_loop_is_no_triangle(self) -> None:
+        surface = QuadEdge()
+        loop = surface.make_edge(Vertex(0), Vertex(0))
+        surface.splice(loop, loop.sym)
+        for side in (loop, loop.sym):
+            surface.set_left(side, Face(0))
+            assert [*side.face()] == [side]
+        assert surface.triangles().shape == (0, 3)
+
+
+class Model(RuleBasedStateMachine):
+    """onext of the primal quarter-edges in a dictionary; the dual follows from it."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.surface = QuadEdge(capacity=1)
+        self.onext: dict[int, int] = {}
+
+    def pick(self, data: st.DataObject) -> Edge[Primal]:
+        return self.surface.edge(data.draw(st.sampled_from(sorted(self.onext))))
+
+    def splice(self, a: int, b: int) -> None:
+        self.onext[a], self.onext[b] = self.onext[b], self.onext[a]
+
+    def oprev(self, q: int) -> int:
+        return next(p for p, after in self.onext.items() if after == q)
+
+    def lnext(self, q: int) -> int:
+        return self.oprev(q ^ 2)
+
+    @rule()
+    def make(self) -> None:
+        q = self.surface.make_edge(Vertex(len(self.onext)), Vertex(0)).index
+        assert q not in self.onext
+        self.onext[q], self.onext[q ^ 2] = q, q ^ 2
+
+    @precondition(lambda self: self.onext)
+    @rule(data=st.data())
+    def splice_primal(self, data: st.DataObject) -> None:
+        a, b = self.pick(data), self.pick(data)
+        self.surface.splice(a, b)
+        self.splice(a.index, b.index)
+
+    @precondition(lambda self: self.onext)
+    @rule(data=st.data())
+    def splice_dual(self, data: st.DataObject) -> None:
+        """e rot onext = e oprev inv_rot: the dual splice exchanges what comes before a and b."""
+        a, b = self.pick(data), self.pick(data)
+        self.surface.splice(a.rot, b.rot)
+        p, q = self.oprev(a.index), self.oprev(b.index)
+        self.onext[p], self.onext[q] = b.index, a.index
+
+    @precondition(lambda self: self.onext)
+    @rule(data=st.data())
+    def connect(self, data: st.DataObject) -> None:
+        a, b = self.pick(data), self.pick(data)
+        after = self.lnext(a.index)
+        new = self.surface.connect(a, b)
+        assert (new.org, new.dest) == (a.dest, b.org)
+        self.onext[new.index], self.onext[new.index ^ 2] = new.index, new.index ^ 2
+        self.splice(new.index, after)
+        self.splice(new.index ^ 2, b.index)
+
+    @precondition(lambda self: self.onext)
+    @rule(data=st.data())
+    def delete(self, data: st.DataObject) -> None:
+        edge = self.pick(data)
+        self.surface.delete_edge(edge)
+        for q in (edge.index, edge.index ^ 2):
+            self.splice(q, self.oprev(q))
+        for q in (edge.index, edge.index ^ 2):
+            assert self.onext.pop(q) == q
+
+    @precondition(lambda self: self.onext)
+    @rule(data=st.data())
+    def swap(self, data: st.DataObject) -> None:
+        edge = self.pick(data)
+        e = edge.index
+        faces = []
+        for q in (e, e ^ 2):
+            face = [q]
+            while self.lnext(face[-1]) != q:
+                face.append(self.lnext(face[-1]))
+            faces.append(face)
+        if any(len(face) != 3 for face in faces) or e ^ 2 in faces[0]:
+            with pytest.raises(TopologyError):
+                self.surface.swap(edge)
+            return
+        self.surface.swap(edge)
+        a, b = self.oprev(e), self.oprev(e ^ 2)
+        self.splice(e, a)
+        self.splice(e ^ 2, b)
+        self.splice(e, self.lnext(a))
+        self.splice(e ^ 2, self.lnext(b))
+
+    @invariant()
+    def is_the_model(self) -> None:
+        self.surface.check()
+        assert len(self.surface) * 2 == len(self.onext)
+        assert {e.index for edge in self.surface.edges() for e in (edge, edge.sym)} == set(self.onext)
+        for q, after in self.onext.items():
+            assert self.surface.edge(q).onext.index == after
+            assert self.surface.edge(after).rot.onext.index == self.surface.edge(q).inv_rot.index
+
+    @invariant()
+    def satisfies_euler(self) -> None:
+        """Whatever was done, each piece is a closed orientable surface."""
+        v, e, f = self.surface.counts()
+        assert (v - e + f) % 2 == 0
+
+
+Model.TestCase.settings = settings(max_examples=100, stateful_step_count=30)
+TestModel = pytest.mark.obligation("M1", "the edge algebra, step by step against a model")(Model.TestCase)
+
+
+def rejected(check: Callable[[], None]) -> bool:
+    try:
+        check()
+    except (AssertionError, TopologyError):
+        return True
+    return False
+
+
+@ALGEBRA
+class TestModelIsNotVacuous:
+    """The invariants of the machine above reject a quad-edge that did something else."""
+
+    def test_lost_splice(self) -> None:
+        machine = Model()
+        machine.make()
+        machine.make()
+        machine.is_the_model()
+        machine.splice(0, 4)  # in the model only
+        assert rejected(machine.is_the_model)
+
+    def test_corrupt_ring(self) -> None:
+        machine = Model()
+        machine.make()
+        machine.surface.ring_of(QuarterEdge(0))[0] = 2
+        assert rejected(machine.is_the_model)
+
+
+@ALGEBRA
+class TestFromTriangles:
+    """from_triangles and triangles are inverse to each other; what is no triangulation is refused, not walked into."""
+
+    def test_round_trip(self) -> None:
+        for triangles in triangulations(grid(3, 3)):
+            surface = QuadEdge.from_triangles(triangles)
+            assert {frozenset(row) for row in surface.triangles().tolist()} == {frozenset(t) for t in triangles}
+            vertices, edges, faces = surface.counts()
+            assert (vertices, faces, vertices - edges + faces) == (9, len(triangles) + 1, 2)
+            assert [e.dest for e in next(e for e in surface.edges() if e.left == OUTSIDE or e.right == OUTSIDE).orbit()]
+
+    def test_rows_are_faces(self) -> None:
+        rows = [(0, 1, 2), (0, 2, 3)]
+        for edge in QuadEdge.from_triangles(rows).edges():
+            for side in (edge, edge.sym):
+                corners = {e.org for e in side.face()}
+                assert corners == ({0, 1, 2, 3} if side.left == OUTSIDE else set(rows[side.left]))
+
+    @pytest.mark.parametrize(
+        ("triangles", "culprits"),
+        [
+            ([(0, 1, 2), (-1, 2, 1)], (1,)),
+            ([(0, 1, 2), (1, 1, 0)], (1,)),
+            ([(0, 1, 2), (0, 1, 3)], (0, 1)),
+            ([(0, 1, 2), (0, 1, 2)], (0, 1)),
+        ],
+    )
+    def test_bad_corners(self, triangles: list[tuple[int, int, int]], culprits: tuple[int, ...]) -> None:
+        with pytest.raises(TopologyError) as raised:
+            QuadEdge.from_triangles(triangles)
+        assert raised.value.indices == culprits
+
+    @pytest.mark.parametrize("entry", [0, 1, 2, -2])
+    def test_bad_neighbors(self, entry: int) -> None:
+        triangles = [(0, 1, 2), (0, 2, 3)]
+        good = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
+        assert len(QuadEdge.from_triangles(triangles, good)) == 5
+        for place in np.ndindex(2, 3):
+            bad = good.copy()
+            bad[place] = entry
+            if entry != good[place]:
+                with pytest.raises(TopologyError):
+                    QuadEdge.from_triangles(triangles, bad)
+
+    def test_bad_arrays(self) -> None:
+        ring, vertex, face = rings_of(np.array([(0, 1, 2)], dtype=np.int32), np.full((1, 3), -1, dtype=np.int32))
+        assert len(QuadEdge.from_arrays(ring, vertex, face)) == 3
+        frozen = ring.copy()
+        frozen.setflags(write=False)
+        for wrong in (ring.astype(np.int64), ring.reshape(3, 4), np.repeat(ring, 2)[::2], frozen, ring.tolist()):
+            with pytest.raises(ShapeError, match="ring"):
+                QuadEdge.from_arrays(wrong, vertex, face)  # type: ignore[arg-type]  # that is the point
+        with pytest.raises(TopologyError):
+            QuadEdge.from_arrays(ring[:8], vertex, face)
+
+    def test_deleted_edges_stay_deleted(self) -> None:
+        surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+        surface.delete_edge(surface.edge(4))
+        ring = surface.ring_of(QuarterEdge(0))
+        again = QuadEdge.from_arrays(ring, np.zeros(10, np.int32), np.zeros(10, np.int32))
+        assert len(again) == len([*again.edges()]) == 4
+        assert again.make_edge().index == 4
+
+    def test_empty_grows(self) -> None:
+        surface = QuadEdge.from_triangles(np.empty((0, 3), dtype=np.int64))
+        assert surface.counts() == (0, 0, 0)
+        for edges in range(1, 10):
+            surface.make_edge()
+            assert surface.counts() == (2 * edges, edges, edges)
+
+    def test_strangers(self) -> None:
+        ours, theirs = QuadEdge(), QuadEdge()
+        with pytest.raises(TopologyError, match="another"):
+            ours.splice(ours.make_edge(), theirs.make_edge())
+        for index in (1, -2, 4, 10**9):
+            with pytest.raises(TopologyError):
+                ours.edge(index)
+
+
+SNIPPET = """\
+from exactmesh import Dual, Edge, Face, Primal, QuadEdge, Vertex
+
+surface = QuadEdge()
+edge: Edge[Primal] = surface.make_edge(Vertex(0), Vertex(1))
+dual: Edge[Dual] = edge.rot
+same: Edge[Primal] = edge.rot.rot.onext.lnext
+start: Vertex = edge.org
+left: Face = edge.rot.dest
+right: Vertex = edge.rot.rot.dest
+surface.splice(edge, edge.sym)
+surface.splice(edge.rot, dual)
+wrong_vertex: Vertex = edge.rot.org  # wrong
+wrong_face: Face = edge.dest  # wrong
+surface.splice(edge, edge.rot)  # wrong
+surface.swap(edge.rot)  # wrong
+surface.set_org(edge, edge.left)  # wrong
+wrong_kind: Edge[Primal] = edge.inv_rot  # wrong
+surface.connect(edge, edge.rot.onext)  # wrong
+"""
+
+
+@ALGEBRA
+class TestTypedHandles:
+    """To a type checker primal and dual edges, vertices and faces are different things: it rejects just the lines that
+    mix them."""
+
+    def test_mypy(self, tmp_path: Path) -> None:
+        script = tmp_path / "snippet.py"
+        script.write_text(SNIPPET)
+        root = Path(__file__).parents[1]
+        options = ["--config-file", str(root / "pyproject.toml"), "--no-error-summary", "--hide-error-context"]
+        output, errors, _ = mypy.run([*options, "--cache-dir", str(root / ".mypy_cache"), str(script)])
+        assert not errors
+        reported = {int(number) for number in re.findall(r"snippet\.py:(\d+): error:", output)}
+        wrong = {number for number, line in enumerate(SNIPPET.splitlines(), 1) if line.endswith("# wrong")}
+        assert reported == wrong, output
