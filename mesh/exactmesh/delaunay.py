@@ -131,25 +131,26 @@ def second_position(xy: FloatArray) -> int:
 
 
 @jit
-def first_turn(k: Context, xy: FloatArray, b: int, first: int, stop: int) -> int:
-    """Return the first vertex of first .. stop - 1 that is not collinear with 0 and b, or stop."""
-    c = first
-    while c < stop and orient(k, xy, 0, b, c) == 0:
-        c += 1
-    return c
+def first_turn(k: Context, xy: FloatArray, b: int, first: int, stop: int) -> tuple[int, int]:
+    """Return the first vertex of first .. stop - 1 that is not collinear with 0 and b, or stop; and the turn there."""
+    for c in range(first, stop):
+        turn = orient(k, xy, 0, b, c)
+        if turn != 0:
+            return c, turn
+    return stop, 0
 
 
 @jit
 def first_triangle(
-    k: Context, xy: FloatArray, order: IndexArray, ring: EdgeArray, org: EdgeArray, b: int, c: int
+    xy: FloatArray, order: IndexArray, ring: EdgeArray, org: EdgeArray, b: int, c: int, turn: int
 ) -> None:
-    """Move the vertices b < c, not collinear with 0, to the front and build the triangle and its three ghosts."""
+    """Move the vertices b < c to the front and build the triangle that they turn to with 0, and its three ghosts."""
     for position, chosen in ((1, b), (2, c)):
         order[position], order[chosen] = order[chosen], order[position]
         for axis in range(2):
             i, j = 2 * position + axis, 2 * chosen + axis
             xy[i], xy[j] = xy[j], xy[i]
-    second, third = (1, 2) if orient(k, xy, 0, 1, 2) > 0 else (2, 1)
+    second, third = (1, 2) if turn > 0 else (2, 1)
     org[0] = org[5] = 0
     org[2] = org[1] = second
     org[4] = org[3] = third
@@ -208,10 +209,10 @@ def _begin(xy: FloatArray, k: Context, order: IndexArray, ring: EdgeArray, org: 
     step = chunk_size(k, _CHUNK)
     for first in range(b + 1, n, step):
         stop = min(first + step, n)
-        c = first_turn(k, xy, b, first, stop)
+        c, turn = first_turn(k, xy, b, first, stop)
         raise_if_interrupted()
-        if c < stop:
-            first_triangle(k, xy, order, ring, org, b, c)
+        if turn != 0:
+            first_triangle(xy, order, ring, org, b, c, turn)
             return 6
     return 0
 
