@@ -83,7 +83,7 @@ class TestImportDirections:
             ("exactmesh.quadedge", "import exactmesh.cli"),
         ],
     )
-    def test_a_wrong_import_is_noticed(self, module: str, line: str) -> None:
+    def test_control_a_wrong_import_is_noticed(self, module: str, line: str) -> None:
         assert forbidden(module, line)
 
     def test_all_sources_are_seen(self) -> None:
@@ -114,7 +114,7 @@ class TestDocuments:
         text = path.read_text(encoding="utf-8")
         assert run_blocks(text, str(path)) == text.count("```python")
 
-    def test_blocks_share_names_and_can_fail(self) -> None:
+    def test_control_blocks_share_names_and_can_fail(self) -> None:
         assert run_blocks("```python\nx = 1\n```\n\n```python\nassert x == 1\n```\n", "good") == 2
         with pytest.raises(AssertionError):
             run_blocks("text\n```python\nassert 1 == 2\n```\n", "bad")

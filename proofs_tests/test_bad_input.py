@@ -124,7 +124,7 @@ class TestPoints:
     def test_flat(self, case: Case) -> None:
         assert_refused(lambda: delaunay(case.points), case)  # type: ignore[arg-type]  # tables are of objects
 
-    def test_the_table_is_needed(self) -> None:
+    def test_control_without_the_culprit(self) -> None:
         """Without the culprit the same input is taken."""
         assert len(delaunay(SQUARE).triangles) == 2
         assert lawson(SQUARE, HALVES).canonical() == MESH.canonical()

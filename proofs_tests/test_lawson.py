@@ -21,9 +21,6 @@ from exactmesh.ids import OUTSIDE
 
 Points = Sequence[tuple[float, float]]
 
-FLIPS = pytest.mark.obligation("M2", "each flip lowers Phi by exactly incircle; flips <= n(n-1)/2")
-SINK = pytest.mark.obligation("M3", "Lawson ends in THE Delaunay triangulation from every triangulation of small sets")
-
 #: Interpreted, a part of them; compiled, all.
 CASES = {name: case if COMPILED or case[1] < 100 else (case[0], -1) for name, case in COUNTS.items()}
 
@@ -68,7 +65,7 @@ def plain_test(points: Points, edge: Edge[Primal]) -> bool:
     return incircle(a, b, c, d) <= 0
 
 
-@FLIPS
+@pytest.mark.obligation("M2", "each flip lowers 6 Phi by exactly incircle, a tie only its slopes")
 class TestOneFlip:
     """A flip of ac to bd changes 6 Phi by exactly -incircle(a, b, c, d), whichever edge is flipped, Delaunay or not;
     a tie changes nothing but the slopes of 6 Phi in the lifts."""
@@ -112,6 +109,18 @@ class TestOneFlip:
         assert (False, False) not in seen  # what is not locally Delaunay can be flipped
         assert {(True, True), (True, False)} <= seen
 
+    def test_control_another_determinant(self) -> None:
+        """The change is no other determinant: with d in the place of c it differs."""
+        points = COUNTS["convex hexagon"][0]
+        exact = oracles.rationals(points)
+        surface = QuadEdge.from_triangles(next(triangulations(points)))
+        edge = next(edge for edge in inner(surface) if is_flippable(points, edge))
+        a, b, c, d = corners(exact, edge)
+        before = mesh_oracle.potential(exact, rows(surface))
+        flip(points, edge)
+        change = before - mesh_oracle.potential(exact, rows(surface))
+        assert change not in (0, exact_incircle(a, b, d, c), exact_incircle(b, a, c, d))
+
     def test_the_hull_is_left_alone(self) -> None:
         points = [(0, 0), (1, 0), (0, 1)]
         for edge in QuadEdge.from_triangles([(0, 1, 2)]).edges():
@@ -128,7 +137,7 @@ def descends(points: Sequence[RationalPoint], met: Sequence[Triangulation]) -> b
     return all(after < before for before, after in pairwise(heights))
 
 
-@FLIPS
+@pytest.mark.obligation("M2", "the perturbed potential falls along Lawson, which takes at most n(n-1)/2 flips")
 class TestDescent:
     """Along Lawson's algorithm the perturbed potential falls strictly, ties included, so it ends, within n(n-1)/2
     flips: an edge once gone never comes back."""
@@ -147,7 +156,7 @@ class TestDescent:
                 gone |= edges[0] - edges[1]
                 assert not gone & edges[1]
 
-    def test_descent_can_fail(self) -> None:
+    def test_control_descent_can_fail(self) -> None:
         """Backwards it rises; and with ties unperturbed 6 Phi alone stands still."""
         points = COUNTS["cocircular octagon"][0]
         exact = oracles.rationals(points)
@@ -157,7 +166,7 @@ class TestDescent:
         assert len({mesh_oracle.potential(exact, t) for t in met}) == 1
 
 
-@SINK
+@pytest.mark.obligation("M3", "there are as many triangulations as published, and flips connect them")
 class TestCounts:
     """The enumerators find the published number of triangulations, each once and admissible; flips reach them all."""
 
@@ -189,7 +198,9 @@ class TestCounts:
         assert reached == everything
 
 
-@SINK
+@pytest.mark.obligation(
+    "M3", "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal"
+)
 class TestOneSink:
     """From every triangulation Lawson's algorithm ends in the one whose perturbed circles are empty, which is also what
     insertion builds, and whose smallest angle is the largest of all."""
@@ -219,7 +230,7 @@ class TestOneSink:
         if name != "cocircular octagon":
             assert max(others) > best
 
-    def test_without_perturbation_there_are_many(self) -> None:
+    def test_control_without_perturbation_there_are_many(self) -> None:
         """The uniqueness above comes from the perturbation: the plain test ends wherever the ties were at the start."""
         points = COUNTS["3 x 3 grid"][0]
         starts = list(triangulations(points))
@@ -240,7 +251,8 @@ class TestOneSink:
         assert canonical_triangles(again.triangles.tolist()) == canonical_triangles(mesh.triangles.tolist())
 
 
-@SINK
+@pytest.mark.bounds
+@pytest.mark.obligation("M3", "Lawson ends there from starts far away")
 class TestManyPoints:
     """The same from a start that has nothing to do with Delaunay: a fan of needles, and equal diagonals."""
 

@@ -55,7 +55,7 @@ class TestHilbert:
                 position, state = position << 2 | step >> 2, step & 3
             assert found == position << 2 | state
 
-    def test_another_table_is_no_curve(self) -> None:
+    def test_control_another_table_is_no_curve(self) -> None:
         table = _deep_table(2)
         table[[3, 9]] = table[[9, 3]]
         assert not is_a_curve(curve(table.tolist(), 2, 0))
@@ -77,6 +77,7 @@ HARD = {
 }
 
 
+@pytest.mark.bounds
 class TestPermutation:
     """Each point comes once, however the points lie and whatever the seed; the recursion into clusters ends."""
 
@@ -88,7 +89,7 @@ class TestPermutation:
     def test_hard_points(self, points: FloatArray) -> None:
         assert is_permutation(insertion_order(points, 0), len(points))
 
-    def test_repetition_is_noticed(self) -> None:
+    def test_control_repetition_is_noticed(self) -> None:
         assert not is_permutation(np.array([0, 1, 1]), 3)
 
     def test_no_points(self) -> None:

@@ -33,6 +33,7 @@ def cities(name: str) -> FloatArray:
     return points[sorted({*range(0, len(points), 100), *again})]
 
 
+@pytest.mark.obligation("M4", "real cities, duplicates and all, are triangulated as brute force and scipy say")
 @EACH
 class TestCities:
     """All cities are triangulated: the verifier agrees, each city has the vertex at its place, no place has two, and
@@ -92,7 +93,7 @@ def sides(rows: list[list[int]]) -> set[frozenset[int]]:
 class TestRefutation:
     """The comparison with scipy is not empty talk: a triangle with a city in its circle is refuted."""
 
-    def test_refuted(self) -> None:
+    def test_control_refuted(self) -> None:
         points = np.random.default_rng(0).choice(CITIES["world"], 40, replace=False)
         exact = oracles.rationals(delaunay(points).points.tolist())
         t: Triangle = oracles.counterclockwise(exact, (0, 1, 2))
@@ -130,6 +131,7 @@ CORPUS: dict[str, tuple[FloatArray, int | None]] = {
 }
 
 
+@pytest.mark.obligation("M4", "where GEOS and scipy are wrong, insertion is right")
 class TestKnownCases:
     """On the published and the known failures of other meshers the result is that of brute force, and verified."""
 
@@ -145,7 +147,7 @@ class TestKnownCases:
             assert canonical_triangles(mesh.triangles.tolist()) == mesh_oracle.delaunay_triangles(exact)
 
     @pytest.mark.parametrize("mesher", [delaunay, Delaunay])
-    def test_scipy_fails(self, mesher: Callable[[FloatArray], object]) -> None:
+    def test_control_scipy_fails(self, mesher: Callable[[FloatArray], object]) -> None:
         """The checks above reject what scipy says of the same points, and accept what exactmesh says."""
         points = CORPUS["scipy: points dropped"][0]
         mesh = mesher(points)

@@ -49,6 +49,7 @@ def triangles_of(mesh: Triangulation) -> list[Triangle]:
     return [(a, b, c) for a, b, c in mesh.triangles.tolist()]
 
 
+@pytest.mark.bounds
 @EACH
 class TestArrays:
     """Each array means what its line says, by naive definitions."""
@@ -128,7 +129,7 @@ def smallest_angle(cotangent: Fraction) -> float:
 class TestStatisticsCanFail:
     """The comparison with exact figures rejects other ones."""
 
-    def test_close(self) -> None:
+    def test_control_close(self) -> None:
         assert not is_close(0.0, Fraction(1), Fraction(1, 2))
         assert not is_close(1.0001, Fraction(1), Fraction(1, 2**30))
         assert not is_close(math.inf, Fraction(1), Fraction(1))
@@ -164,7 +165,7 @@ class TestFrozen:
         base = array.base
         assert base is None or not base.flags.writeable
 
-    def test_a_view_would_be_noticed(self) -> None:
+    def test_control_a_view_would_be_noticed(self) -> None:
         base = np.arange(6)
         view = base.reshape(2, 3)
         view.setflags(write=False)
@@ -232,6 +233,7 @@ def misplaced(mesh: Triangulation, queries: list[Point], found: list[int]) -> li
     return wrong
 
 
+@pytest.mark.bounds
 class TestLocate:
     """A point is in the closure of the triangle that locate names; -1 means that it is in none."""
 
@@ -254,7 +256,7 @@ class TestLocate:
         assert (found[: len(mesh.points)] >= 0).all()
         assert found.dtype == np.int32
 
-    def test_a_misplaced_point_is_noticed(self) -> None:
+    def test_control_a_misplaced_point_is_noticed(self) -> None:
         mesh = MESHES["random"]
         queries: list[Point] = [(0.5, 0.5), (9.0, 9.0)]
         here, outside = mesh.locate(queries).tolist()
