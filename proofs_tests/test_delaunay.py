@@ -22,8 +22,6 @@ from exactkernel.types import FloatArray, Stage
 from exactmesh import Triangulation, delaunay, lawson, verify
 from exactmesh.errors import CollinearPointsError, TooFewPointsError
 
-UNIQUE = pytest.mark.obligation("M4", "incremental insertion equals Lawson equals brute force, for every order")
-
 #: The module; the package exports the function under the same name.
 MODULE = sys.modules["exactmesh.delaunay"]
 
@@ -73,7 +71,7 @@ def triples(rows: list[list[int]]) -> list[tuple[int, int, int]]:
     return sorted((a, b, c) for a, b, c in rows)
 
 
-@UNIQUE
+@pytest.mark.obligation("M4", "insertion equals brute force on every subset of a 4 x 4 grid, in random orders")
 class TestAllSubsetsOfAGrid:
     """For every subset of a grid, inserted in a random order, the triangles are those whose perturbed circles are
     empty, found by looking at all triples; subsets of a line are refused."""
@@ -124,12 +122,12 @@ FAULTS = {
 }
 
 
-@UNIQUE
+@pytest.mark.obligation("M4", "an insertion with a seeded fault is found by the comparison with brute force")
 class TestFaultsAreFound:
     """The comparison above rejects an insertion with a seeded fault: run in a child process, interpreted."""
 
     @pytest.mark.parametrize("fault", FAULTS)
-    def test_fault(self, fault: str) -> None:
+    def test_control_fault(self, fault: str) -> None:
         source = FAULTY.format(fault=FAULTS[fault])
         root = Path(__file__).parents[1]
         child = subprocess.run(
@@ -154,7 +152,7 @@ SIX: dict[str, Sequence[Point]] = {
 }
 
 
-@UNIQUE
+@pytest.mark.obligation("M4", "insertion gives the same triangulation in all 720 orders of six points")
 class TestEveryOrder:
     """All 720 orders of insertion of six points give one and the same triangulation."""
 
@@ -177,7 +175,8 @@ def is_collinear(points: list[oracles.RationalPoint]) -> bool:
     return not any(oracles.has_area(points, t) for t in combinations(range(len(points)), 3))
 
 
-@UNIQUE
+@pytest.mark.bounds
+@pytest.mark.obligation("M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles")
 class TestAnyPoints:
     """For any doubles, duplicates and all: the vertices are the distinct points in the order of the input, the
     triangles those of brute force, and an error says that all points lie on a line just when they do."""
@@ -249,7 +248,8 @@ def euler_holds(mesh: Triangulation) -> bool:
     return len(mesh.triangles) == 2 * len(mesh.points) - len(mesh.hull) - 2
 
 
-@UNIQUE
+@pytest.mark.bounds
+@pytest.mark.obligation("M4", "the triangulation of many points is the same for every seed and order, and verified")
 class TestManyPoints:
     """The same triangulation for every seed and order of many points; the verifier, which shares no code, agrees."""
 
@@ -265,7 +265,7 @@ class TestManyPoints:
             assert delaunay(points, seed=seed).canonical() == canonical
             assert delaunay(points[order], seed=seed).canonical() == canonical
 
-    def test_a_flipped_edge_is_noticed(self) -> None:
+    def test_control_a_flipped_edge_is_noticed(self) -> None:
         mesh = delaunay(STRUCTURED["uniform"])
         surface = mesh.quad_edge()
         for edge in surface.edges():
@@ -277,7 +277,7 @@ class TestManyPoints:
         assert not verify(other.points, other.triangles).ok
 
 
-@UNIQUE
+@pytest.mark.obligation("M4", "degenerate input is decided in doubles")
 class TestStages:
     """The stage that the design names decides each kind of input, so that no degenerate input ends in rationals."""
 
@@ -302,7 +302,6 @@ class TestStages:
         assert work.incircle[Stage.RATIONAL] > 0
 
 
-@UNIQUE
 class TestProgress:
     """Progress is told in increasing numbers that end with all points; an exception in it passes through."""
 

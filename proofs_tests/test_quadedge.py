@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule, run_state_machine_as_test
 from mypy import api as mypy
 from proofs_tests.enumeration import grid, primal_permutations, reachable_states, triangulations
 
@@ -20,10 +20,6 @@ from exactmesh import edgealgebra as algebra
 from exactmesh.connectivity import neighbors_of, rings_of
 from exactmesh.errors import ShapeError, TopologyError
 from exactmesh.ids import OUTSIDE
-
-ALGEBRA = pytest.mark.obligation(
-    "M1", "the edge algebra: rot^4 = e, splice is an involution, Euler; in every state of at most four edges"
-)
 
 Permutation = list[int]
 
@@ -69,7 +65,9 @@ def states() -> list[IntArray]:
     return [reachable_states(k) for k in range(1, 5 if COMPILED else 4)]
 
 
-@ALGEBRA
+@pytest.mark.obligation(
+    "M1", "every reachable state of at most four edges is a subdivision of orientable surfaces (Euler)"
+)
 class TestEveryState:
     """From k isolated edges splices reach (2k)! states: every permutation of the primal quarter-edges as onext, each
     with its one dual. Every one is a subdivision of closed orientable surfaces: V - E + F = 2 - 2 genus."""
@@ -99,7 +97,7 @@ class TestEveryState:
                 genera.add(twice_genus // 2)
         assert genera == {0, 1}  # three edges make a torus, too
 
-    def test_euler_can_fail(self) -> None:
+    def test_control_a_twisted_edge(self) -> None:
         """The ring of a twisted edge (onext leads to the same edge flipped over) is refused: nothing but orientable
         surfaces passes."""
         ring = np.array([0, 1, 2, 3], dtype=np.int32)  # the dual not turned: a projective plane has V - E + F = 1
@@ -108,7 +106,7 @@ class TestEveryState:
             QuadEdge.from_arrays(ring, labels, labels.copy())
 
 
-@ALGEBRA
+@pytest.mark.obligation("M1", "rot^4 = e, and every operator is what its definition says, in every state")
 class TestOperators:
     """rot has order four, sym is its square, and each operator is what it is without the dual: with oprev the inverse
     of onext, lnext = oprev sym, dnext = sym onext sym, and so on; each next is the inverse of its prev."""
@@ -158,7 +156,7 @@ class TestOperators:
                 assert {e.left for e in handle.face()} == {handle.left}
 
 
-@ALGEBRA
+@pytest.mark.obligation("M1", "splice is an involution that joins or cuts one origin and one left face")
 class TestSplice:
     """Splice is its own inverse; it joins two origins or cuts one, and the same with the left faces."""
 
@@ -200,11 +198,11 @@ def breaks_axioms(ring: Permutation, q: int) -> bool:
     return back // 4 * 4 + (back + 1) % 4 != q
 
 
-@ALGEBRA
+@pytest.mark.obligation("M1", "check accepts just the edge algebras and names the quarter-edge that breaks an axiom")
 class TestCheck:
     """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
 
-    def test_every_corruption(self, states: list[IntArray]) -> None:
+    def test_control_every_corruption(self, states: list[IntArray]) -> None:
         labels = np.zeros(4, dtype=np.int32)
         for ring in states[1]:
             for q in range(len(ring)):
@@ -257,7 +255,8 @@ def inner_edges(surface: QuadEdge) -> list[QuarterEdge]:
     return [q.index for e in surface.edges() if OUTSIDE not in (e.left, e.right) for q in (e, e.sym)]
 
 
-@ALGEBRA
+@pytest.mark.bounds
+@pytest.mark.obligation("M1", "swap, split_face, connect and delete_edge are what splices make of them")
 class TestDerivedOperations:
     """swap, split_face and delete_edge are what make_edge and splice make of them, entry by entry."""
 
@@ -274,7 +273,7 @@ class TestDerivedOperations:
                     for side in (e, e.sym):
                         assert {f.left for f in side.face()} == {side.left}
 
-    def test_the_comparison_sees_a_wrong_swap(self) -> None:
+    def test_control_a_wrong_swap_is_seen(self) -> None:
         surface = next(small_surfaces())
         index = inner_edges(surface)[0]
         ours, theirs = copied(surface), copied(surface)
@@ -468,10 +467,6 @@ class Model(RuleBasedStateMachine):
         assert (v - e + f) % 2 == 0
 
 
-Model.TestCase.settings = settings(max_examples=100, stateful_step_count=30)
-TestModel = pytest.mark.obligation("M1", "the edge algebra, step by step against a model")(Model.TestCase)
-
-
 def rejected(check: Callable[[], None]) -> bool:
     try:
         check()
@@ -480,11 +475,14 @@ def rejected(check: Callable[[], None]) -> bool:
     return False
 
 
-@ALGEBRA
-class TestModelIsNotVacuous:
-    """The invariants of the machine above reject a quad-edge that did something else."""
+@pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step")
+class TestModel:
+    """After any sequence of operations, deletions included, the quad-edge is its model, and an edge algebra."""
 
-    def test_lost_splice(self) -> None:
+    def test_any_sequence(self) -> None:
+        run_state_machine_as_test(Model, settings=settings(max_examples=100, stateful_step_count=30))
+
+    def test_control_lost_splice(self) -> None:
         machine = Model()
         machine.make()
         machine.make()
@@ -492,14 +490,15 @@ class TestModelIsNotVacuous:
         machine.splice(0, 4)  # in the model only
         assert rejected(machine.is_the_model)
 
-    def test_corrupt_ring(self) -> None:
+    def test_control_corrupt_ring(self) -> None:
         machine = Model()
         machine.make()
         machine.surface.ring_of(QuarterEdge(0))[0] = 2
         assert rejected(machine.is_the_model)
 
 
-@ALGEBRA
+@pytest.mark.bounds
+@pytest.mark.obligation("M1", "triangles to quad-edge and back is the identity; anything else is refused")
 class TestFromTriangles:
     """from_triangles and triangles are inverse to each other; what is no triangulation is refused, not walked into."""
 
@@ -527,13 +526,13 @@ class TestFromTriangles:
             ([(0, 1, 2), (0, 1, 2)], (0, 1)),
         ],
     )
-    def test_bad_corners(self, triangles: list[tuple[int, int, int]], culprits: tuple[int, ...]) -> None:
+    def test_control_bad_corners(self, triangles: list[tuple[int, int, int]], culprits: tuple[int, ...]) -> None:
         with pytest.raises(TopologyError) as raised:
             QuadEdge.from_triangles(triangles)
         assert raised.value.indices == culprits
 
     @pytest.mark.parametrize("entry", [0, 1, 2, -2])
-    def test_bad_neighbors(self, entry: int) -> None:
+    def test_control_bad_neighbors(self, entry: int) -> None:
         triangles = [(0, 1, 2), (0, 2, 3)]
         good = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
         assert len(QuadEdge.from_triangles(triangles, good)) == 5
@@ -601,12 +600,12 @@ surface.connect(edge, edge.rot.onext)  # wrong
 """
 
 
-@ALGEBRA
+@pytest.mark.obligation("M1", "primal and dual, vertices and faces are different types")
 class TestTypedHandles:
     """To a type checker primal and dual edges, vertices and faces are different things: it rejects just the lines that
     mix them."""
 
-    def test_mypy(self, tmp_path: Path) -> None:
+    def test_control_mypy_rejects_just_the_wrong_lines(self, tmp_path: Path) -> None:
         script = tmp_path / "snippet.py"
         script.write_text(SNIPPET)
         root = Path(__file__).parents[1]

@@ -5,6 +5,9 @@ so the algorithm ends; with the perturbed test it ends in one and the same trian
 Reference [Lawson 1977], [Edelsbrunner 2001].
 """
 
+from collections.abc import Sequence
+from typing import TypeAlias
+
 import numpy as np
 import numpy.typing as npt
 
@@ -14,7 +17,7 @@ from exactkernel.incircle import incircle_perturbed, incircle_perturbed_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
-from exactkernel.types import FloatArray, Sign
+from exactkernel.types import FloatArray, PointLike, Sign
 from exactmesh.chunks import chunk_size
 from exactmesh.connectivity import neighbors_of, rings_of
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
@@ -40,13 +43,17 @@ _TRIANGULATION = (
 )
 
 
-def _corners(points: FloatArray, edge: Edge[Primal]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+#: Coordinates of the vertices: an array (n, 2), or any sequence of points, rational ones included.
+Points: TypeAlias = "FloatArray | Sequence[PointLike]"
+
+
+def _corners(points: Points, edge: Edge[Primal]) -> tuple[PointLike, PointLike, PointLike, PointLike]:
     """Return a, b, c, d: the edge runs from a to c, b is the apex on its right, d on its left."""
     a, c = edge.org, edge.dest
     return points[a], points[edge.oprev.dest], points[c], points[edge.onext.dest]
 
 
-def is_locally_delaunay(points: FloatArray, edge: Edge[Primal]) -> bool:
+def is_locally_delaunay(points: Points, edge: Edge[Primal]) -> bool:
     """Tell whether the apex on one side of the edge is outside the (perturbed) circle of the other; on the hull, True.
 
     Args:
@@ -64,7 +71,7 @@ def is_locally_delaunay(points: FloatArray, edge: Edge[Primal]) -> bool:
     return incircle_perturbed(*_corners(points, edge)) is not Sign.POSITIVE
 
 
-def is_flippable(points: FloatArray, edge: Edge[Primal]) -> bool:
+def is_flippable(points: Points, edge: Edge[Primal]) -> bool:
     """Tell whether the two triangles at the edge form a strictly convex quadrilateral; arguments as above.
 
     >>> from exactmesh import QuadEdge, is_flippable
@@ -78,7 +85,7 @@ def is_flippable(points: FloatArray, edge: Edge[Primal]) -> bool:
     return orient2d(a, b, d) is Sign.POSITIVE and orient2d(b, c, d) is Sign.POSITIVE
 
 
-def flip(points: FloatArray, edge: Edge[Primal]) -> None:
+def flip(points: Points, edge: Edge[Primal]) -> None:
     """Replace the edge by the other diagonal of its two triangles, in place.
 
     Raises:
