@@ -9,7 +9,6 @@ release = version = installed("exactmesh")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 exclude_patterns = ["_build"]
-suppress_warnings = ["myst.xref_missing"]
 
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 3
