@@ -422,11 +422,11 @@ class QuadEdge:
         algebra.splice(self._ring, a.index, b.index)
 
     def connect(self, a: Edge[Primal], b: Edge[Primal]) -> Edge[Primal]:
-        """Return a new edge from the destination of a to the origin of b, which divides their common left face.
+        """Return a new edge from the destination of a to the origin of b, which divides their common left face::
 
-        b.org <--- new --- a.dest
-          |                  ^
-        b v       left       | a
+            b.org <--- new --- a.dest
+              |                  ^
+            b v       left       | a
         """
         self._own_primal(a, b)
         new = self.make_edge(a.dest, b.org)
