@@ -4,7 +4,7 @@ from importlib.metadata import version as installed
 
 project = "exactmesh"
 author = "The exactmesh developers"
-copyright = author  # noqa: A001  # Sphinx's own name
+copyright = author  # Sphinx's own name
 release = version = installed("exactmesh")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from PIL import Image  # comes with matplotlib
 
+from exactkernel.types import FloatArray
 from exactmesh import delaunay
 from exactmesh.demo import course_points, mosaic
 from exactmesh.plot import plot_mesh
-from exactkernel.types import FloatArray
 
 HERE = Path(__file__).resolve().parent / "_static"
 

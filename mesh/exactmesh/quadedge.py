@@ -425,7 +425,9 @@ class QuadEdge:
         algebra.splice(self._ring, a.index, b.index)
 
     def connect(self, a: Edge[Primal], b: Edge[Primal]) -> Edge[Primal]:
-        """Return a new edge from the destination of a to the origin of b, which divides their common left face::
+        """Return a new edge from the destination of a to the origin of b, which divides their common left face.
+
+        Before, a and b have the same face on their left; after, the new edge lies between them::
 
             b.org <--- new --- a.dest
               |                  ^
