@@ -67,7 +67,7 @@ def diametral_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, p
 
 
 def diametral_staged(a: PointLike, b: PointLike, p: PointLike) -> tuple[Sign, Stage]:
-    """Return the sign of :func:`diametral` and the stage that decided it.
+    """Return the sign of :func:`diametral` and the stage that decided it. Arguments and errors as there.
 
     >>> from exactkernel import diametral_staged
     >>> diametral_staged((0, 0), (2, 0), (1, 0.5))

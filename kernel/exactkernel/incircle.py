@@ -276,7 +276,7 @@ def incircle_perturbed_adaptive(
 
 
 def incircle_staged(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> tuple[Sign, Stage]:
-    """Return the sign of :func:`incircle` and the stage that decided it.
+    """Return the sign of :func:`incircle` and the stage that decided it. Arguments and errors as there.
 
     >>> from exactkernel import incircle_staged
     >>> incircle_staged((0, 0), (1, 0), (1, 1), (0, 1))
@@ -334,7 +334,7 @@ def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -
     Every point is lifted by an infinitesimal of its own, the lexicographically smallest point by the largest. The
     answer is ZERO only where two points coincide or all four lie on one line. Arguments and errors as for incircle.
 
-    Reference [Edelsbrunner 1990], [Devillers 2011].
+    Constant time for doubles. Reference [Edelsbrunner 1990], [Devillers 2011].
 
     >>> from exactkernel import incircle_perturbed
     >>> incircle_perturbed((0, 0), (1, 0), (1, 1), (0, 1))

@@ -104,7 +104,7 @@ def orient2d_adaptive(c: Context, ax: float, ay: float, bx: float, by: float, cx
 
 
 def orient2d_staged(a: PointLike, b: PointLike, c: PointLike) -> tuple[Sign, Stage]:
-    """Return the sign of :func:`orient2d` and the stage that decided it.
+    """Return the sign of :func:`orient2d` and the stage that decided it. Arguments and errors as there.
 
     >>> from exactkernel import orient2d_staged
     >>> orient2d_staged((0, 0), (1, 0), (0, 1))

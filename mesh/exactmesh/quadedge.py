@@ -403,7 +403,7 @@ class QuadEdge:
     def splice(self, a: Edge[Kind], b: Edge[Kind]) -> None:
         """Exchange what follows a and b round their origins, and so round their left faces; its own inverse.
 
-        If the origins were two, they become one; if they were one, it becomes two; the same for the left faces.
+        If the origins were two, they become one; if they were one, it becomes two; the same for the left faces::
 
             a'       b                 a'   b
               \\     /                    \\ /
@@ -413,6 +413,9 @@ class QuadEdge:
 
               onext(a) = a'              onext(a) = b'
               onext(b) = b'              onext(b) = a'
+
+        Raises:
+            TopologyError: one is primal and one dual, or an edge is another quad-edge's or was deleted.
         """
         self._own(a, b)
         if (a.index ^ b.index) & 1:
@@ -424,9 +427,11 @@ class QuadEdge:
     def connect(self, a: Edge[Primal], b: Edge[Primal]) -> Edge[Primal]:
         """Return a new edge from the destination of a to the origin of b, which divides their common left face.
 
-        b.org <--- new --- a.dest
-          |                  ^
-        b v       left       | a
+        Before, a and b have the same face on their left; after, the new edge lies between them::
+
+            b.org <--- new --- a.dest
+              |                  ^
+            b v       left       | a
         """
         self._own_primal(a, b)
         new = self.make_edge(a.dest, b.org)

@@ -53,6 +53,15 @@ class Triangulation:
         neighbors: int32 (m, 3), the triangle across the edge opposite to each corner, -1 outside.
         representative: int32, the vertex that stands for each point of the input; duplicates share one.
         work: what it took to build it.
+
+    >>> from exactmesh import delaunay
+    >>> mesh = delaunay([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1), (2, 0)])
+    >>> mesh
+    Triangulation(5 vertices, 4 triangles)
+    >>> mesh.representative.tolist()                    # point 5 lies where point 1 does
+    [0, 1, 2, 3, 4, 1]
+    >>> mesh.neighbors[mesh.locate([(1, 0.5)])[0]].tolist().count(-1)   # that triangle has one edge on the hull
+    1
     """
 
     points: FloatArray

@@ -102,6 +102,18 @@ def write(path: PathLike, mesh: Mesh | Triangulated) -> tuple[str, ...]:
     Raises:
         FileFormatError: an unknown suffix, or a suffix that cannot hold the mesh.
         OSError: the folder is missing, the disk full, and so on.
+
+    >>> import os, tempfile
+    >>> from exactmesh import delaunay
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> paths = write(os.path.join(folder.name, "a.node"), delaunay([(0, 0), (1, 0), (0, 0.1)]))
+    >>> [os.path.basename(path) for path in paths]
+    ['a.node', 'a.ele', 'a.neigh', 'a.edge']
+    >>> read(paths[1]).points.tolist()
+    [[0.0, 0.0], [1.0, 0.0], [0.0, 0.1]]
+    >>> folder.cleanup()
+
+    Reference: [Shewchuk 1996]
     """
     name, stem, suffix = _parts(path)
     content = mesh_of(mesh)

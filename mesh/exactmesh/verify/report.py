@@ -105,6 +105,13 @@ class Report:
         claims: the properties that were claimed.
         point_count, triangle_count: the size of the input.
         stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
+
+    >>> from exactmesh.verify import Property, verify
+    >>> report = verify([(0, 0), (4, 0), (0, 3)], [(0, 2, 1)])
+    >>> report.ok, [str(claim) for claim in report.claims if report.verdict(claim) != "holds"]
+    (False, ['orientation'])
+    >>> report.findings[Property.ORIENTATION].violations[0].magnitude
+    Fraction(-12, 1)
     """
 
     findings: Mapping[Property, Finding]

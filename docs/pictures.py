@@ -1,0 +1,31 @@
+"""Draws the pictures of the README and of the site: ``python docs/pictures.py``, with the extra ``plot``."""
+
+import tempfile
+from pathlib import Path
+
+from PIL import Image  # comes with matplotlib
+
+from exactkernel.types import FloatArray
+from exactmesh import delaunay
+from exactmesh.demo import course_points, mosaic
+from exactmesh.plot import plot_mesh
+
+HERE = Path(__file__).resolve().parent / "_static"
+
+
+def draw(name: str, points: FloatArray, title: str, *, width: int) -> None:
+    """Draw a Delaunay triangulation, then shrink it: few colours, few pixels, few bytes."""
+    mesh = delaunay(points)
+    with tempfile.TemporaryDirectory() as folder:
+        large = Path(folder) / f"{name}.png"
+        plot_mesh(mesh.points, mesh.triangles, large, title=title)
+        with Image.open(large) as picture:
+            height = round(picture.height * width / picture.width)
+            small = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
+    small.quantize(32, method=Image.Quantize.MEDIANCUT).save(HERE / f"{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    HERE.mkdir(exist_ok=True)
+    draw("mosaic", mosaic(), "A grid, rings, a sunflower and spirals", width=880)
+    draw("course", course_points(), "The course's five points", width=480)
