@@ -6,32 +6,60 @@
 [[0, 1, 2]]
 """
 
-from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
+from exactkernel.types import Sign, Stage
 from exactmesh.delaunay import delaunay
+from exactmesh.errors import (
+    CollinearPointsError,
+    CoordinateError,
+    DegenerateError,
+    ExactMeshError,
+    FileFormatError,
+    InadmissibleError,
+    NonFiniteError,
+    SeedError,
+    ShapeError,
+    TooFewPointsError,
+    TooManyPointsError,
+    TopologyError,
+)
 from exactmesh.ids import OUTSIDE, Face, QuarterEdge, Vertex
 from exactmesh.lawson import flip, is_flippable, is_locally_delaunay, lawson
 from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
+from exactmesh.quality import Statistics
 from exactmesh.triangulation import Triangulation, Work
-from exactmesh.verify import Property, Report, Verdict, verify
+from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
 
 __all__ = [
     "OUTSIDE",
+    "CollinearPointsError",
     "CoordinateError",
     "DegenerateError",
     "Dual",
     "Edge",
     "ExactMeshError",
     "Face",
+    "FileFormatError",
+    "InadmissibleError",
     "NonFiniteError",
+    "Orientation",
     "Primal",
     "Property",
     "QuadEdge",
     "QuarterEdge",
     "Report",
+    "SeedError",
     "ShapeError",
+    "Sign",
+    "Stage",
+    "Statistics",
+    "TooFewPointsError",
+    "TooManyPointsError",
+    "TopologyError",
     "Triangulation",
     "Verdict",
+    "VerificationError",
     "Vertex",
+    "Violation",
     "Work",
     "delaunay",
     "flip",
