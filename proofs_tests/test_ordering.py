@@ -106,7 +106,7 @@ class TestRounds:
         sizes = np.bincount(_rounds(n, 0)).tolist()
         assert len(sizes) == 4
         for level, size in enumerate(reversed(sizes[1:])):
-            expected = n * 8**-level * 7 / 8
+            expected = n * 16**-level * 15 / 16
             assert abs(size - expected) < 6 * expected**0.5
         assert abs(sizes[0] - 2048) < 6 * 2048**0.5
 
