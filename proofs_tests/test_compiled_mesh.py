@@ -38,6 +38,15 @@ class TestLanes:
         assert mesh_digest._mesh(delaunay(points)) == mesh_digest._mesh(delaunay(points.copy()))
 
 
+@pytest.mark.bounds
+@pytest.mark.compiled
+class TestBounds:
+    """No routine leaves an array on any of the inputs of the digest: with NUMBA_BOUNDSCHECK=1 it would raise."""
+
+    def test_all(self) -> None:
+        assert len(mesh_digest.digests()) == 5 * len(mesh_digest.inputs()) + 2
+
+
 @pytest.mark.compiled
 @pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of insertion, flips and location")
 class TestMachineCode:

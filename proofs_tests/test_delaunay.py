@@ -175,6 +175,7 @@ def is_collinear(points: list[oracles.RationalPoint]) -> bool:
     return not any(oracles.has_area(points, t) for t in combinations(range(len(points)), 3))
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles")
 class TestAnyPoints:
     """For any doubles, duplicates and all: the vertices are the distinct points in the order of the input, the
@@ -247,6 +248,7 @@ def euler_holds(mesh: Triangulation) -> bool:
     return len(mesh.triangles) == 2 * len(mesh.points) - len(mesh.hull) - 2
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("M4", "the triangulation of many points is the same for every seed and order, and verified")
 class TestManyPoints:
     """The same triangulation for every seed and order of many points; the verifier, which shares no code, agrees."""

@@ -252,6 +252,7 @@ class TestOneSink:
         assert canonical_triangles(again.triangles.tolist()) == canonical_triangles(mesh.triangles.tolist())
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("M3", "Lawson ends there from starts far away")
 class TestManyPoints:
     """The same from a start that has nothing to do with Delaunay: a fan of needles, and equal diagonals."""

@@ -85,6 +85,7 @@ HARD = {
 }
 
 
+@pytest.mark.bounds
 class TestPermutation:
     """Each point comes once, however the points lie and whatever the seed; the recursion into clusters ends."""
 

@@ -256,6 +256,7 @@ def inner_edges(surface: QuadEdge) -> list[QuarterEdge]:
     return [q.index for e in surface.edges() if OUTSIDE not in (e.left, e.right) for q in (e, e.sym)]
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("M1", "swap, split_face, connect and delete_edge are what splices make of them")
 class TestDerivedOperations:
     """swap, split_face and delete_edge are what make_edge and splice make of them, entry by entry."""
@@ -497,6 +498,7 @@ class TestModel:
         assert rejected(machine.is_the_model)
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("M1", "triangles to quad-edge and back is the identity; anything else is refused")
 class TestFromTriangles:
     """from_triangles and triangles are inverse to each other; what is no triangulation is refused, not walked into."""

@@ -49,6 +49,7 @@ def triangles_of(mesh: Triangulation) -> list[Triangle]:
     return [(a, b, c) for a, b, c in mesh.triangles.tolist()]
 
 
+@pytest.mark.bounds
 @EACH
 class TestArrays:
     """Each array means what its line says, by naive definitions."""
@@ -234,6 +235,7 @@ def misplaced(mesh: Triangulation, queries: list[Point], found: list[int]) -> li
     return wrong
 
 
+@pytest.mark.bounds
 class TestLocate:
     """A point is in the closure of the triangle that locate names; -1 means that it is in none."""
 
