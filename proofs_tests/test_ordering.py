@@ -12,7 +12,15 @@ from proofs_tests.mesh_strategies import point_sets
 from exactkernel.jit import COMPILED
 from exactkernel.types import FloatArray
 from exactmesh.errors import SeedError
-from exactmesh.ordering import IndexArray, _deep_table, _hilbert_table, _rounds, insertion_order
+from exactmesh.ordering import (
+    _FIRST_ROUND,
+    _ROUND_BITS,
+    IndexArray,
+    _deep_table,
+    _hilbert_table,
+    _rounds,
+    insertion_order,
+)
 
 
 def curve(table: list[int], levels: int, state: int) -> list[tuple[int, int]]:
@@ -98,17 +106,19 @@ class TestPermutation:
 
 
 class TestRounds:
-    """Of n points the last round holds about 7/8, the one before 7/8 of the rest, down to a thousand or so in the
-    first; the same seed gives the same rounds, another seed others."""
+    """Of n points the last round holds all but a fixed share, the one before all but that share of the rest, down to
+    about as few as the first shall have; the same seed gives the same rounds, another seed others."""
 
     def test_sizes(self) -> None:
-        n = 1 << 20
-        sizes = np.bincount(_rounds(n, 0)).tolist()
-        assert len(sizes) == 4
-        for level, size in enumerate(reversed(sizes[1:])):
-            expected = n * 16**-level * 15 / 16
-            assert abs(size - expected) < 6 * expected**0.5
-        assert abs(sizes[0] - 2048) < 6 * 2048**0.5
+        n, share = 1 << 20, 2.0**-_ROUND_BITS
+        sizes = np.bincount(_rounds(n, 0)).tolist()[::-1]
+        left = float(n)
+        for size in sizes[:-1]:
+            assert abs(size - left * (1.0 - share)) < 6 * left**0.5
+            left *= share
+        assert abs(sizes[-1] - left) < 6 * left**0.5
+        assert _FIRST_ROUND <= left < _FIRST_ROUND / share
+        assert set(_rounds(_FIRST_ROUND, 0).tolist()) == {0}
 
     def test_seeds(self) -> None:
         assert (_rounds(100_000, 5) == _rounds(100_000, 5)).all()

@@ -1,6 +1,7 @@
 """M1: the edge algebra, on every state that splices reach; the typed quad-edge against a model."""
 
 import re
+import sys
 from collections.abc import Callable, Iterator
 from itertools import combinations
 from pathlib import Path
@@ -536,6 +537,8 @@ class TestFromTriangles:
         triangles = [(0, 1, 2), (0, 2, 3)]
         good = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
         assert len(QuadEdge.from_triangles(triangles, good)) == 5
+        with pytest.raises(TopologyError, match="1 rows of neighbors for 2"):
+            QuadEdge.from_triangles(triangles, good[:1])
         for place in np.ndindex(2, 3):
             bad = good.copy()
             bad[place] = entry
@@ -569,8 +572,22 @@ class TestFromTriangles:
             surface.make_edge()
             assert surface.counts() == (2 * edges, edges, edges)
 
+    def test_full(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(sys.modules["exactmesh.quadedge"], "MAX_EDGES", 4)
+        surface = QuadEdge(capacity=1)
+        for _ in range(4):
+            surface.make_edge()
+        with pytest.raises(TopologyError, match="at most 4"):
+            surface.make_edge()
+        assert len(surface) == 4
+        surface.check()
+
     def test_strangers(self) -> None:
         ours, theirs = QuadEdge(), QuadEdge()
+        for wrong in (2**31, -(2**31) - 1, 2**70):
+            with pytest.raises(TopologyError, match="32 bits"):
+                ours.make_edge(Vertex(wrong))
+        assert len(ours) == 0
         with pytest.raises(TopologyError, match="another"):
             ours.splice(ours.make_edge(), theirs.make_edge())
         for index in (1, -2, 4, 10**9):

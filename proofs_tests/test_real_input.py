@@ -61,10 +61,9 @@ class TestCities:
             order = np.random.default_rng(seed).permutation(len(points))
             assert delaunay(points[order], seed=seed).canonical() == canonical
 
-    @pytest.mark.parametrize("seed", [0, 1])
-    def test_brute_force(self, name: str, seed: int) -> None:
+    def test_brute_force(self, name: str) -> None:
         """Of 200 cities, every triangle has an empty (perturbed) circle, and they are as many as Euler wants."""
-        points = np.random.default_rng(seed).choice(CITIES[name], 200 if COMPILED else 60, replace=False)
+        points = np.random.default_rng(0).choice(CITIES[name], 200 if COMPILED else 60, replace=False)
         mesh = delaunay(points)
         exact = oracles.rationals(mesh.points.tolist())
         for a, b, c in mesh.triangles.tolist():

@@ -36,7 +36,6 @@ __all__ = [
     "rnext",
     "rot",
     "rprev",
-    "set_left_next",
     "splice",
     "split_face",
     "swap",
@@ -152,12 +151,6 @@ def splice(ring: EdgeArray, a: int, b: int) -> None:
 def left_next(ring: EdgeArray, e: int) -> int:
     """Return lnext of a primal edge."""
     return int(ring[e ^ 3]) ^ 3
-
-
-@jit
-def set_left_next(ring: EdgeArray, e: int, f: int) -> None:
-    """Make f follow the primal edge e round their left face."""
-    ring[e ^ 3] = f ^ 3
 
 
 @jit

@@ -37,6 +37,9 @@ __all__ = ["NO_VERTEX", "Dual", "Edge", "Primal", "QuadEdge"]
 #: The origin of an edge that was given none.
 NO_VERTEX = Vertex(-1)
 
+#: Quarter-edges are numbered in 31 bits.
+MAX_EDGES = 2**29
+
 _FREE = -1  # ring entry of a deleted quarter-edge
 
 
@@ -186,6 +189,12 @@ class Edge(Generic[Kind]):
             edge = edge.lnext
             if edge == self:
                 return
+
+
+def _label(number: int) -> int:
+    if not -(2**31) <= number < 2**31:
+        raise TopologyError(f"{number} does not fit 32 bits", indices=[number])
+    return number
 
 
 def _is_flat_int32(array: object) -> bool:
@@ -359,12 +368,12 @@ class QuadEdge:
     def set_org(self, edge: Edge[Primal], vertex: Vertex) -> None:
         """Let the edge start at that vertex; the others of its ring are not touched."""
         self._own_primal(edge)
-        self._vertex[edge.index >> 1] = vertex
+        self._vertex[edge.index >> 1] = _label(vertex)
 
     def set_left(self, edge: Edge[Primal], face: Face) -> None:
         """Let that face be on the left of the edge; the other edges round it are not touched."""
         self._own_primal(edge)
-        self._face[algebra.inv_rot(edge.index) >> 1] = face
+        self._face[algebra.inv_rot(edge.index) >> 1] = _label(face)
 
     def _own(self, *edges: Edge[Primal] | Edge[Dual]) -> None:
         for edge in edges:
@@ -380,6 +389,7 @@ class QuadEdge:
 
     def make_edge(self, org: Vertex = NO_VERTEX, dest: Vertex = NO_VERTEX) -> Edge[Primal]:
         """Return a new edge, by itself on a sphere: two vertices, one face."""
+        ends = _label(org), _label(dest)
         if self._free:
             q = self._free.pop()
         else:
@@ -388,14 +398,14 @@ class QuadEdge:
             q = 4 * self._count
             self._count += 1
         algebra.make_edge(self._ring, q)
-        self._vertex[q >> 1], self._vertex[(q >> 1) + 1] = org, dest
+        self._vertex[q >> 1], self._vertex[(q >> 1) + 1] = ends
         self._face[q >> 1] = self._face[(q >> 1) + 1] = OUTSIDE
         return Edge(self, QuarterEdge(q))
 
     def _grow(self) -> None:
         room = max(1, len(self._ring) // 4)
-        if room > 2**28:
-            raise TopologyError("a quad-edge holds at most 2^29 edges")
+        if 2 * room > MAX_EDGES:
+            raise TopologyError(f"a quad-edge holds at most {MAX_EDGES} edges")
         self._ring = np.concatenate([self._ring, np.full(4 * room, _FREE, dtype=np.int32)])
         self._vertex = np.concatenate([self._vertex, np.full(2 * room, NO_VERTEX, dtype=np.int32)])
         self._face = np.concatenate([self._face, np.full(2 * room, OUTSIDE, dtype=np.int32)])
