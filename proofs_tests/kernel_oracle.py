@@ -57,9 +57,11 @@ def incircle(*points: ExactPoint) -> int:
 
 
 def incircle_perturbed(*points: ExactPoint) -> int:
-    """The determinant is linear in the lifts, so the sign is the first among itself and its slopes, largest first."""
+    """The determinant is linear in the lifts, so the sign is the first among itself and its slopes, largest first.
+
+    The lift belongs to the point: two rows at one place are lifted together."""
     signs = [incircle(*points)]
     exact = _exact(points)
     order = sorted(range(4), key=lambda position: exact[position])
-    signs += [_lifted(points, [Fraction(i == j) for j in range(4)]) for i in order]
+    signs += [_lifted(points, [Fraction(exact[i] == exact[j]) for j in range(4)]) for i in order]
     return next((sign for sign in signs if sign != 0), 0)

@@ -181,11 +181,21 @@ class TestArrays:
         assert exact_doubles([(1e300, 0.5), (2**53 + 2, -1e17)]).tolist() == [[1e300, 0.5], [2.0**53 + 2, -1e17]]
 
     @pytest.mark.parametrize(
-        "bad", [5, None, [], [1, 2], [(1, 2, 3)], [(1, 2), (3,)], np.zeros((2, 3)), np.zeros((2, 2, 2)), "abc"]
+        "bad", [5, None, [1, 2], [(1, 2, 3)], [(1, 2), (3,)], np.zeros((2, 3)), np.zeros((2, 2, 2)), "abc"]
     )
     def test_shapes(self, bad: npt.ArrayLike) -> None:
         with pytest.raises(ek.ShapeError, match="points"):
             exact_doubles(bad)
+
+    def test_an_empty_list_is_no_points(self) -> None:
+        assert exact_doubles([]).shape == (0, 2)
+
+    def test_masked_values_are_refused(self) -> None:
+        masked = np.ma.MaskedArray([(0.0, 0.0), (9e9, 9e9)], mask=[(False, False), (False, True)])
+        with pytest.raises(ek.CoordinateError, match=r"points\[1\]: masked") as caught:
+            exact_doubles(masked)
+        assert caught.value.indices == (1,)
+        assert exact_doubles(np.ma.MaskedArray([(0.0, 0.0)])).tolist() == [[0.0, 0.0]]
 
     @pytest.mark.parametrize(
         "bad", [[(True, False)], [("1", "2")], [(1j, 0)], [(None, 1)], [(Decimal(1), 1)], [(np.nan, None)]]

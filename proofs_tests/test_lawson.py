@@ -278,3 +278,13 @@ class TestManyPoints:
         mesh = lawson(points, start)
         assert mesh.canonical() == delaunay(points).canonical()
         assert mesh.work.flips in (0, (side - 1) ** 2)
+
+
+class TestVerticesWithoutCoordinates:
+    """A flip primitive names the vertex that the points do not reach."""
+
+    def test_named(self) -> None:
+        surface = QuadEdge.from_triangles([(0, 1, 2), (0, 2, 3)])
+        diagonal = next(e for e in surface.edges() if {e.org, e.dest} == {0, 2})
+        with pytest.raises(TopologyError, match="vertex 3 has no row in 3 points"):
+            is_flippable([(0, 0), (1, 0), (1, 1)], diagonal)

@@ -632,3 +632,16 @@ class TestTypedHandles:
         reported = {int(number) for number in re.findall(r"snippet\.py:(\d+): error:", output)}
         wrong = {number for number, line in enumerate(SNIPPET.splitlines(), 1) if line.endswith("# wrong")}
         assert reported == wrong, output
+
+
+class TestPinchedTriangles:
+    """Triangles that meet in a vertex without an edge between them are no surface that the rings could describe."""
+
+    def test_refused(self) -> None:
+        with pytest.raises(TopologyError, match="pinched"):
+            QuadEdge.from_triangles([(0, 1, 2), (0, 3, 4)])
+
+    def test_repr_of_an_edge_names_its_ends(self) -> None:
+        edge = next(QuadEdge.from_triangles([(0, 1, 2)]).edges())
+        assert repr(edge) == f"Edge[Primal]({edge.org} -> {edge.dest})"
+        assert repr(edge.rot) == f"Edge[Dual]({edge.right} -> {edge.left})"

@@ -291,3 +291,22 @@ class TestOrientation:
         report = verify([(0, 0), (1, 1), (3, 3)], [(0, 1, 2)], orientation=orientation)
         for property_ in (Property.ORIENTATION, Property.ADMISSIBLE, Property.DELAUNAY, Property.ACUTE):
             assert report.findings[property_].violations[0].kind is Kind.ZERO_AREA
+
+
+class TestReportAtAGlance:
+    """A report is true if every claim holds, its repr is one line, and unclaimed facts take no room."""
+
+    GOOD = ([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)])
+    CLOCKWISE = ([(0, 0), (1, 0), (0, 1)], [(0, 2, 1)])
+
+    def test_truth(self) -> None:
+        assert verify(*self.GOOD)
+        assert not verify(*self.CLOCKWISE)
+
+    def test_repr(self) -> None:
+        assert repr(verify(*self.GOOD)) == "Report(3 points, 1 triangles, ok)"
+        assert "orientation fails" in repr(verify(*self.CLOCKWISE))
+
+    def test_unclaimed_failures_have_no_witnesses_in_print(self) -> None:
+        assert "90 degrees" not in str(verify(*self.GOOD))
+        assert "90 degrees" in str(verify(*self.GOOD, claims=["acute"]))

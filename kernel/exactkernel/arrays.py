@@ -42,6 +42,14 @@ def _is_kept(array: npt.NDArray[np.generic], doubles: FloatArray) -> npt.NDArray
     return within & kept
 
 
+def _refuse_masked(points: npt.ArrayLike, name: str) -> None:
+    """numpy drops a mask silently, and with it the fact that a value is missing."""
+    if isinstance(points, np.ma.MaskedArray):
+        masked = np.flatnonzero(np.ma.getmaskarray(points).reshape(len(points), -1).any(axis=1))
+        if masked.size:
+            raise CoordinateError(f"{_culprits(masked, name)}: masked", indices=masked.tolist())
+
+
 def exact_doubles(points: npt.ArrayLike, name: str = "points") -> FloatArray:
     """Return points as a C-contiguous float64 array (n, 2); NaN and infinity pass.
 
@@ -50,9 +58,13 @@ def exact_doubles(points: npt.ArrayLike, name: str = "points") -> FloatArray:
         CoordinateError: the dtype is not numeric, or a value is not exactly a double (an integer beyond 2^53,
         say).
     """
+    _refuse_masked(points, name)
     array = unrounded_array(points, name)
+    if array.shape == (0,):  # an empty list
+        return np.empty((0, 2), dtype=np.float64)
     if array.ndim != 2 or array.shape[1] != 2:
-        raise ShapeError(f"{name} has shape {array.shape}; expected (n, 2)")
+        given = "" if isinstance(points, np.ndarray) else f" ({type(points).__name__})"
+        raise ShapeError(f"{name} has shape {array.shape}{given}; expected (n, 2)")
     if array.dtype == np.float64:
         return np.ascontiguousarray(array, dtype=np.float64)
     if array.dtype == object:

@@ -211,6 +211,12 @@ def before(ax: float, ay: float, bx: float, by: float) -> bool:
     return ax < bx or (ax == bx and ay < by)
 
 
+@jit_inline
+def same(ax: float, ay: float, bx: float, by: float) -> bool:
+    """Tell whether a and b are one point."""
+    return ax == bx and ay == by
+
+
 @jit
 def cofactor(
     k: Context, i: int, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
@@ -232,8 +238,14 @@ def break_tie(
     """Return the sign of incircle with infinitesimal lifts, the lexicographically smallest point's the largest.
 
     Four distinct cocircular points have no three collinear, so the first cofactor decides. Only collinear input, which
-    no triangulation asks about, takes more, in lexicographic order.
+    no triangulation asks about, takes more, in lexicographic order. The lift belongs to the point: where two coincide,
+    two rows of the determinant are the same.
     """
+    if (
+        same(ax, ay, bx, by) or same(ax, ay, cx, cy) or same(ax, ay, dx, dy)
+        or same(bx, by, cx, cy) or same(bx, by, dx, dy) or same(cx, cy, dx, dy)
+    ):  # fmt: skip
+        return 0
     done = 0  # a bit for each position whose cofactor vanished
     for _ in range(4):
         i, x, y = 4, math.inf, math.inf
@@ -319,6 +331,8 @@ def incircle(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> Sign:
 
 
 def _perturbed_rational(points: list[RationalPoint]) -> int:
+    if len(set(points)) < 4:
+        return 0
     sign = incircle_rational(points[0], points[1], points[2], points[3])
     for i in sorted(range(4), key=lambda position: points[position]):
         if sign != 0:
@@ -332,7 +346,7 @@ def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -
     """Return :func:`incircle` with ties broken, so that the Delaunay triangulation is unique.
 
     Every point is lifted by an infinitesimal of its own, the lexicographically smallest point by the largest. The
-    answer is ZERO only where two points coincide or all four lie on one line. Arguments and errors as for incircle.
+    answer is ZERO where two points coincide or all four lie on one line, and nowhere else. Arguments and errors as for incircle.
 
     Constant time for doubles. Reference [Edelsbrunner 1990], [Devillers 2011].
 

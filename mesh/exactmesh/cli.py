@@ -87,10 +87,10 @@ def triangulate(
             triangulation = delaunay(points.points, seed=seed, progress=progress)
         except ExactMeshError as error:
             raise FileFormatError(str(error), path=source) from error
-    with working(f"writing {target}"):
-        mesh = _carried_over(points, triangulation)
-        paths = write(target, mesh)
     duplicates = _duplicates(triangulation, points.base)
+    with working(f"writing {target}"):
+        mesh = _carried_over(points, triangulation, target)
+        paths = write(target, mesh)
     if duplicates is not None:
         typer.echo(duplicates)
     typer.echo(f"{len(triangulation.points)} points, {len(triangulation.triangles)} triangles: {' '.join(paths)}")
@@ -104,21 +104,26 @@ def _next_name(source: str) -> str:
 
 
 def _first_of_each(triangulation: "Triangulation") -> "npt.NDArray[np.intp]":
-    """For each vertex the first input point that it stands for."""
+    """For each vertex the first input point that it stands for: vertices are numbered as their points come."""
     import numpy as np
 
-    return np.unique(triangulation.representative, return_index=True)[1]
+    return np.flatnonzero(np.diff(np.maximum.accumulate(triangulation.representative), prepend=-1))
 
 
-def _carried_over(source: "Mesh", triangulation: "Triangulation") -> "Mesh":
-    """The triangulation as a mesh, with the attributes and markers of the points that were kept."""
+def _carried_over(source: "Mesh", triangulation: "Triangulation", target: str) -> "Mesh":
+    """The triangulation as a mesh, with the attributes and markers of the points that were kept.
+
+    Neighbors and edges come along where a .neigh or .edge file of an older mesh would be left beside the target.
+    """
     from exactmesh.io import Mesh
 
-    first = _first_of_each(triangulation)
+    first, stem = _first_of_each(triangulation), os.path.splitext(target)[0]
     attributes, markers = source.point_attributes, source.point_markers
     return Mesh(
         triangulation.points,
         triangles=triangulation.triangles,
+        neighbors=triangulation.neighbors if os.path.exists(f"{stem}.neigh") else None,
+        edges=triangulation.edges if os.path.exists(f"{stem}.edge") else None,
         point_attributes=None if attributes is None else attributes[first],
         point_markers=None if markers is None else markers[first],
         base=source.base,
@@ -129,11 +134,11 @@ def _duplicates(triangulation: "Triangulation", base: int) -> str | None:
     """One line that names points which were left out because another has their place; None if there are none."""
     import numpy as np
 
-    first = _first_of_each(triangulation)
     total = len(triangulation.representative)
-    left_out = np.setdiff1d(np.arange(total), first)
-    if not len(left_out):
+    if len(triangulation.points) == total:
         return None
+    first = _first_of_each(triangulation)
+    left_out = np.delete(np.arange(total), first)
     kept = first[triangulation.representative[left_out[:_DUPLICATES_NAMED]]]
     named = ", ".join(f"{base + i} of {base + k}" for i, k in zip(left_out, kept, strict=False))
     more = ", ..." if len(left_out) > _DUPLICATES_NAMED else ""

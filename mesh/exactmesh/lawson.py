@@ -49,8 +49,12 @@ Points: TypeAlias = "FloatArray | Sequence[PointLike]"
 
 def _corners(points: Points, edge: Edge[Primal]) -> tuple[PointLike, PointLike, PointLike, PointLike]:
     """Return a, b, c, d: the edge runs from a to c, b is the apex on its right, d on its left."""
-    a, c = edge.org, edge.dest
-    return points[a], points[edge.oprev.dest], points[c], points[edge.onext.dest]
+    corners = edge.org, edge.oprev.dest, edge.dest, edge.onext.dest
+    missing = [v for v in corners if not 0 <= v < len(points)]
+    if missing:
+        raise TopologyError(f"vertex {missing[0]} has no row in {len(points)} points", indices=missing)
+    a, b, c, d = (points[v] for v in corners)
+    return a, b, c, d
 
 
 def is_locally_delaunay(points: Points, edge: Edge[Primal]) -> bool:

@@ -101,7 +101,7 @@ class _Side(_Label):
         return self._of(edge)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Edge(Generic[Kind]):
     """A handle on one directed edge of a :class:`QuadEdge`; two handles are equal if they mean the same edge.
 
@@ -112,6 +112,11 @@ class Edge(Generic[Kind]):
 
     structure: "QuadEdge"
     index: QuarterEdge
+
+    def __repr__(self) -> str:
+        kind = "Dual" if self.index & 1 else "Primal"
+        ends = (self.structure.label(QuarterEdge(end)) for end in (self.index, algebra.sym(self.index)))
+        return f"Edge[{kind}]({' -> '.join(map(str, ends))})"
 
     def _to(self, index: int) -> "Edge[Kind]":
         return Edge(self.structure, QuarterEdge(index))
@@ -297,7 +302,7 @@ class QuadEdge:
 
         Raises:
             TopologyError: a directed edge is in two triangles, a corner is negative or repeated, or the neighbors are
-                not mutual; ``indices`` names the triangles.
+                not mutual; ``indices`` names the triangles. Or the triangles meet in a vertex without an edge.
             ShapeError: not an integer array of shape (m, 3).
 
         O(m log m), O(m) with neighbors.
@@ -309,10 +314,14 @@ class QuadEdge:
         corners = vertex_indices(triangles)
         check_corners(corners)
         if neighbors is None:
-            return cls.from_arrays(*rings_of(corners, neighbors_of(corners)))
-        given = vertex_indices(neighbors, "neighbors")
-        check_neighbors(corners, given)
-        return cls.from_arrays(*rings_of(corners, given))
+            given = neighbors_of(corners)
+        else:
+            given = vertex_indices(neighbors, "neighbors")
+            check_neighbors(corners, given)
+        surface = cls.from_arrays(*rings_of(corners, given))
+        if surface.counts()[0] != np.count_nonzero(np.bincount(corners.reshape(-1))):
+            raise TopologyError("the triangles are pinched: some meet in a vertex without an edge between them")
+        return surface
 
     def triangles(self) -> IntArray:
         """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""

@@ -14,8 +14,7 @@
   + covers_hull      holds (not claimed)
   + delaunay         holds (not claimed)
   + weakly_acute     holds (not claimed)
-  ! acute            fails, 1 found (not claimed)
-      triangle 0 = 0 (0.0, 0.0), 1 (1.0, 0.0), 2 (0.0, 1.0) has an angle of exactly 90 degrees at 0 (0.0, 0.0)
+  - acute            fails, 1 found (not claimed)
   orient2d: filter 6, grid 1
   incircle: not called
 """

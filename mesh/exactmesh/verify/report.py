@@ -17,6 +17,7 @@ WITNESSES = 100
 FORMAT = "exactmesh-report/1"
 
 _MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
+_UNCLAIMED_FAILS = "-"  # a fact, not a fault
 _SHOWN = 3  # violations of a property that str(report) prints
 
 
@@ -96,7 +97,7 @@ class VerificationError(ExactMeshError):
         self.report = report
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Report:
     """The verdict on every property of a mesh.
 
@@ -120,10 +121,21 @@ class Report:
     triangle_count: int
     stages: Mapping[str, Mapping[Stage, int]]
 
+    def __bool__(self) -> bool:
+        """Tell whether every claimed property holds, so that ``assert verify(...)`` means what it says."""
+        return self.ok
+
+    def __repr__(self) -> str:
+        verdicts = ", ".join(f"{claim} {self.verdict(claim)}" for claim in self.claims if not self._holds(claim))
+        return f"Report({self.point_count} points, {self.triangle_count} triangles, {verdicts or 'ok'})"
+
+    def _holds(self, claim: Property) -> bool:
+        return self.findings[claim].verdict is Verdict.HOLDS
+
     @property
     def ok(self) -> bool:
         """True if every claimed property holds."""
-        return all(self.verdict(claim) is Verdict.HOLDS for claim in self.claims)
+        return all(self._holds(claim) for claim in self.claims)
 
     @property
     def violations(self) -> tuple[Violation, ...]:
@@ -141,7 +153,7 @@ class Report:
             VerificationError: it carries this report.
         """
         if not self.ok:
-            broken = [claim for claim in self.claims if self.verdict(claim) is not Verdict.HOLDS]
+            broken = [claim for claim in self.claims if not self._holds(claim)]
             summary = ", ".join(f"{claim} {self.verdict(claim)}" for claim in broken)
             witnesses = [self.findings[claim].violations for claim in broken]
             sentence = next((violations[0].message for violations in witnesses if violations), "no witness")
@@ -171,7 +183,12 @@ class Report:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
         yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
         for property_, finding in self.findings.items():
-            yield f"  {_MARKS[finding.verdict]} {property_:<16} {self._summary(property_, finding)}"
+            claimed = property_ in self.claims
+            fails = finding.verdict is Verdict.FAILS
+            mark = _UNCLAIMED_FAILS if fails and not claimed else _MARKS[finding.verdict]
+            yield f"  {mark} {property_:<16} {self._summary(property_, finding)}"
+            if fails and not claimed:
+                continue
             for violation in finding.violations[:_SHOWN]:
                 yield f"      {violation.message}"
             if finding.count > _SHOWN:
