@@ -346,7 +346,8 @@ def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -
     """Return :func:`incircle` with ties broken, so that the Delaunay triangulation is unique.
 
     Every point is lifted by an infinitesimal of its own, the lexicographically smallest point by the largest. The
-    answer is ZERO where two points coincide or all four lie on one line, and nowhere else. Arguments and errors as for incircle.
+    answer is ZERO where two points coincide or all four lie on one line, and nowhere else. Arguments and errors as for
+    incircle.
 
     Constant time for doubles. Reference [Edelsbrunner 1990], [Devillers 2011].
 
