@@ -319,12 +319,18 @@ class QuadEdge:
             given = vertex_indices(neighbors, "neighbors")
             check_neighbors(corners, given)
         surface = cls.from_arrays(*rings_of(corners, given))
-        if surface.counts()[0] != np.count_nonzero(np.bincount(corners.reshape(-1))):
+        if surface.counts()[0] != len(np.unique(corners)):
             raise TopologyError("the triangles are pinched: some meet in a vertex without an edge between them")
         return surface
 
     def triangles(self) -> IntArray:
-        """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""
+        """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise.
+
+        O(edges) but for sorting the vertices.
+
+        Raises:
+            TopologyError: a corner was given no vertex.
+        """
         half = np.arange(2 * self._count, dtype=np.int32)
         after = self._ring[(2 * half) ^ 3] ^ 3  # left_next of every primal edge, nonsense for deleted ones
         live = self._ring[2 * half] != _FREE
@@ -332,8 +338,12 @@ class QuadEdge:
         triangular = (after[after[after >> 1] >> 1] == 2 * half) & (after != 2 * half)  # a loop comes back as well
         wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
         slot = np.where(wanted, -1, OUTER).astype(np.int32)
-        same = np.arange(self._vertex.max(initial=0) + 1, dtype=np.int32)
-        return triangles_of(self._ring, self._vertex, slot, same)[0]
+        names, vertex = np.unique(self._vertex[: 2 * self._count], return_inverse=True)
+        triangles, _ = triangles_of(self._ring, vertex.astype(np.int32), slot, names)
+        nameless = np.flatnonzero((triangles < 0).any(axis=1))
+        if nameless.size:
+            raise TopologyError(f"the triangle {triangles[nameless[0]].tolist()} has a corner that is no vertex")
+        return triangles
 
     def __len__(self) -> int:
         """Return the number of edges (each with its four quarter-edges)."""
