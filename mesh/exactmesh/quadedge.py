@@ -226,7 +226,7 @@ def _first_broken(ring: EdgeArray, count: int) -> int:
 
 @jit
 def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
-    """Count the rings of the primal (parity 0) or dual (1) quarter-edges; seen is scratch, all zero."""
+    """Count the rings of the primal (parity 0) or dual (1) quarter-edges; seen, all 0, becomes their numbers from 1."""
     orbits = 0
     for q in range(parity, 4 * count, 2):
         if ring[q] == _FREE or seen[q] != 0:
@@ -234,7 +234,7 @@ def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
         orbits += 1
         e = q
         while seen[e] == 0:
-            seen[e] = 1
+            seen[e] = orbits
             e = ring[e]
     return orbits
 
@@ -319,9 +319,23 @@ class QuadEdge:
             given = vertex_indices(neighbors, "neighbors")
             check_neighbors(corners, given)
         surface = cls.from_arrays(*rings_of(corners, given))
-        if surface.counts()[0] != len(np.unique(corners)):
-            raise TopologyError("the triangles are pinched: some meet in a vertex without an edge between them")
+        pinched = surface._pinched()
+        if pinched.size:
+            raise TopologyError(
+                f"the triangles at vertex {pinched[0]} are pinched: they meet there without an edge between them",
+                indices=pinched.tolist(),
+            )
         return surface
+
+    def _pinched(self) -> IntArray:
+        """Return the vertices that are the origin of more than one ring."""
+        number = np.zeros(4 * self._count, dtype=np.int32)
+        rings = _orbits(self._ring, self._count, 0, number)
+        origin = np.empty(rings + 1, dtype=np.int32)
+        origin[number[0::2]] = self._vertex[: 2 * self._count]
+        names, uses = np.unique(origin[1:], return_counts=True)
+        pinched: IntArray = names[uses > 1]
+        return pinched
 
     def triangles(self) -> IntArray:
         """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise.
