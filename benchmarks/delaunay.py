@@ -38,7 +38,7 @@ def _stages(section: Section, quick: bool) -> None:
 def _growth(section: Section, quick: bool) -> None:
     sizes = [10_000, 100_000] if quick else [10_000, 100_000, 1_000_000, 10_000_000]
     outcomes = {
-        size: race(["exactmesh", "triangle"], "uniform", size=size, rounds=1 if size > 10**6 else 5) for size in sizes
+        size: race(["exactmesh", "triangle"], "uniform", size=size, rounds=3 if size > 10**6 else 5) for size in sizes
     }
     rows = []
     for key in ("exactmesh", "triangle"):

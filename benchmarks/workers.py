@@ -14,7 +14,7 @@ from benchmarks.verifying import VERIFIERS
 
 __all__ = ["Outcome", "race"]
 
-_LIMIT_SECONDS = 120.0  # for one call, after which a mesher is out of the race
+_LIMIT_SECONDS = 60.0  # for one call, after which a mesher is out of the race
 
 
 @dataclass

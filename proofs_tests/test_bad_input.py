@@ -1,9 +1,12 @@
 """Bad input: a typed error that names the culprit in one sentence; nothing is lost, nothing crashes or hangs."""
 
+import dataclasses
 import math
+import pickle
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +19,7 @@ from proofs_tests.kernel_strategies import finite
 from exactmesh import (
     CoordinateError,
     ExactMeshError,
+    Face,
     NonFiniteError,
     QuadEdge,
     ShapeError,
@@ -32,6 +36,7 @@ from exactmesh.errors import (
     TooManyPointsError,
     TopologyError,
 )
+from exactmesh.io import read
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
 MESH = delaunay(SQUARE)
@@ -293,3 +298,61 @@ class TestLocate:
             0,
             -1,
         ]
+
+
+class TestErrorsTravel:
+    """Every error survives a pickle with its message and what it carries: a worker process can report it."""
+
+    @pytest.mark.parametrize(
+        "fail",
+        [
+            lambda: delaunay([(0.0, np.nan), (1, 0), (0, 1)]),
+            lambda: lawson([(0, 0), (1, 0), (0, 1)], [(0, 2, 1)]),
+            lambda: verify([(0, 0), (1, 0), (0, 1)], [(0, 2, 1)]).raise_if_failed(),
+            lambda: read("no-such-mesh.txt"),
+        ],
+    )
+    def test_round_trip(self, fail: Callable[[], object]) -> None:
+        with pytest.raises(ExactMeshError) as caught:
+            fail()
+        again = pickle.loads(pickle.dumps(caught.value))
+        assert type(again) is type(caught.value)
+        assert str(again) == str(caught.value)
+        assert again.indices == caught.value.indices
+        assert sorted(again.__dict__) == sorted(caught.value.__dict__)
+
+
+class TestNoCrash:
+    """Arrays and labels that lead nowhere are refused before compiled code follows them."""
+
+    @pytest.mark.parametrize("name", ["triangles", "neighbors", "representative"])
+    def test_triangulation_by_hand(self, name: str) -> None:
+        mesh = delaunay([(0, 0), (1, 0), (0, 1)])
+        wrong = np.full_like(getattr(mesh, name), 500_000_000)
+        with pytest.raises(ExactMeshError, match=f"{name} has entries outside of"):
+            dataclasses.replace(mesh, **{name: wrong})
+
+    def test_corner_without_vertex(self) -> None:
+        surface = QuadEdge()
+        first, second = surface.make_edge(), surface.make_edge()
+        surface.splice(first.sym, second)
+        third = surface.connect(second, first)
+        for edge in (first, second, third):
+            surface.set_left(edge, Face(0))
+        with pytest.raises(ExactMeshError, match="no vertex"):
+            surface.triangles()
+
+    def test_large_labels(self) -> None:
+        corners = [(0, 1, 2**31 - 1)]
+        assert sorted(QuadEdge.from_triangles(corners).triangles()[0].tolist()) == [0, 1, 2**31 - 1]
+
+    @pytest.mark.parametrize("claims", [[], (), 5])
+    def test_nothing_claimed(self, claims: list[str]) -> None:
+        with pytest.raises(ExactMeshError, match="claim"):
+            verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)], claims=claims)
+
+    def test_claims_from_a_generator(self) -> None:
+        claims = (claim for claim in ["delaunay"])
+        assert not verify([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 1, 2)], claims=list(claims)).ok
+        endless: Any = (claim for claim in ["delaunay"])
+        assert not verify([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2), (0, 1, 2)], claims=endless).ok

@@ -295,3 +295,16 @@ class TestBatch:
         expected = [oracle.orient2d((0, 0), (1, 1), p) for p in line.tolist()]
         assert ek.orient2d_batch((0, 0), (1, 1), line).tolist() == expected
         assert len(set(expected)) == 3
+
+
+class TestBatchWindow:
+    """A power of two brings the operands of a batch into the window: tiny coordinates are not slow, and not wrong."""
+
+    def test_scaled(self) -> None:
+        points = np.random.default_rng(0).random((4, 50, 2))
+        signs = ek.incircle_batch(*points)
+        assert (ek.incircle_batch(*(points * 2.0**-600)) == signs).all()
+        assert (
+            ek.incircle_batch(points[0] * 2.0**-600, points[1, 0] * 2.0**-600, *(points[2:] * 2.0**-600))
+            == ek.incircle_batch(points[0], points[1, 0], *points[2:])
+        ).all()

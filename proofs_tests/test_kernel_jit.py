@@ -30,7 +30,7 @@ class TestCacheFolder:
     def test_opened_where_asked(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "deep" / "down"))
         folder = jit._open_cache()
-        assert folder.parent == tmp_path / "deep" / "down"
+        assert folder.parent == tmp_path / "deep" / "down" / "exactmesh"
         assert jit._open_cache() == folder
 
     def test_the_users_cache_by_default(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -56,18 +56,21 @@ class TestCacheFolder:
         assert jit._open_cache().name.startswith("exactmesh-")
 
     def test_what_is_long_unused_is_removed(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-        old, recent, other = (tmp_path / name for name in ("old", "recent", "other"))
-        for folder in (old, recent):
-            folder.mkdir()
-            (folder / "used").touch()
-        other.mkdir()
+        base = tmp_path / "exactmesh"
+        old, recent, other, foreign = (base / name for name in ("0" * 16, "f" * 16, "e" * 16, "precious"))
         long_ago = time.time() - 40 * 24 * 3600
-        os.utime(old / "used", (long_ago, long_ago))
+        for folder in (old, recent, foreign):
+            folder.mkdir(parents=True)
+            (folder / "used").touch()
+        for folder in (old, foreign):
+            os.utime(folder / "used", (long_ago, long_ago))
+        other.mkdir()
         monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
         jit._open_cache()
         assert not old.exists()
         assert recent.exists()
         assert other.exists()
+        assert foreign.exists()  # no name that the cache would give
 
     def test_warm_means_that_something_is_compiled(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         monkeypatch.setattr(jit, "_CACHE", tmp_path)

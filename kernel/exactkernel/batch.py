@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points, unrounded_array
-from exactkernel.context import Context, make_context
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.diametral import diametral_adaptive
 from exactkernel.errors import ShapeError
 from exactkernel.incircle import incircle_adaptive
@@ -51,7 +51,8 @@ def _broadcast(**operands: npt.ArrayLike) -> tuple[list[FloatArray], Context]:
         shapes = ", ".join(f"{name} {len(points)}" for name, points in zip(operands, rows, strict=True))
         raise ShapeError(f"the lengths do not broadcast: {shapes}")
     n = lengths.pop() if lengths else 1
-    context = make_context(np.concatenate(rows))
+    scaled, context = scaled_into_window(np.concatenate(rows))
+    rows = np.split(scaled, np.cumsum([len(points) for points in rows])[:-1])
     return [np.broadcast_to(points, (n, 2)) if len(points) == 1 else points for points in rows], context
 
 
@@ -75,8 +76,9 @@ def orient2d_batch(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> Sign
     """
     (a, b, c), k = _broadcast(a=a, b=b, c=c)
     signs = np.empty(len(a), dtype=np.int8)
-    for start in range(0, len(signs), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    step = chunk_size(k, _CHUNK)
+    for start in range(0, len(signs), step):
+        part = slice(start, start + step)
         _orient2d_loop(k, a[part], b[part], c[part], signs[part])
         raise_if_interrupted()
     return signs
@@ -96,8 +98,9 @@ def diametral_batch(a: npt.ArrayLike, b: npt.ArrayLike, p: npt.ArrayLike) -> Sig
     """
     (a, b, p), k = _broadcast(a=a, b=b, p=p)
     signs = np.empty(len(a), dtype=np.int8)
-    for start in range(0, len(signs), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    step = chunk_size(k, _CHUNK)
+    for start in range(0, len(signs), step):
+        part = slice(start, start + step)
         _diametral_loop(k, a[part], b[part], p[part], signs[part])
         raise_if_interrupted()
     return signs
@@ -117,8 +120,9 @@ def incircle_batch(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.
     """
     (a, b, c, d), k = _broadcast(a=a, b=b, c=c, d=d)
     signs = np.empty(len(a), dtype=np.int8)
-    for start in range(0, len(signs), _CHUNK):
-        part = slice(start, start + _CHUNK)
+    step = chunk_size(k, _CHUNK)
+    for start in range(0, len(signs), step):
+        part = slice(start, start + step)
         _incircle_loop(k, a[part], b[part], c[part], d[part], signs[part])
         raise_if_interrupted()
     return signs

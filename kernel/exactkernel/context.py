@@ -22,6 +22,7 @@ __all__ = [
     "SCRATCH_SIZE",
     "Context",
     "bits_of",
+    "chunk_size",
     "guarded_context",
     "make_context",
     "scaled_into_window",
@@ -99,6 +100,14 @@ def _context(maximum: float, unit: float) -> Context:
         counts=np.zeros((2, 5), dtype=np.int64),
         mailbox=np.zeros(2, dtype=np.int64),
     )
+
+
+_SLOWDOWN_BITS = 7  # a rational predicate takes about as long as a hundred others
+
+
+def chunk_size(k: Context, usual: int) -> int:
+    """Return how many items to take between two looks at Ctrl-C: fewer where every predicate may be rational."""
+    return usual if k.incircle_bound < math.inf else usual >> _SLOWDOWN_BITS
 
 
 def make_context(coordinates: FloatArray) -> Context:

@@ -1,6 +1,6 @@
 """What the library raises: one base class, and the culprit named in every message."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 __all__ = ["CoordinateError", "DegenerateError", "ExactMeshError", "NonFiniteError", "ShapeError", "shown"]
 
@@ -25,6 +25,16 @@ class ExactMeshError(ValueError):
     def __init__(self, message: str, *, indices: Sequence[int] = ()) -> None:
         super().__init__(message)
         self.indices = tuple(int(i) for i in indices)
+
+    def __reduce__(self) -> tuple[Callable[..., "ExactMeshError"], tuple[object, ...]]:
+        # Exception's own would call the class with the message alone, and subclasses ask for more
+        return _remade, (type(self), self.args, self.__dict__)
+
+
+def _remade(kind: type[ExactMeshError], args: tuple[object, ...], state: dict[str, object]) -> ExactMeshError:
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(state)
+    return error
 
 
 class CoordinateError(ExactMeshError):

@@ -34,6 +34,7 @@ if not COMPILED:  # pragma: no branch
     # numpy's scalars warn of an overflow to infinity, which machine code lets pass, as the filters expect.
     np.seterr(over="ignore", invalid="ignore")
 
+_STAMP_LENGTH = 16
 _UNUSED_AFTER_SECONDS = 30 * 24 * 3600
 
 
@@ -50,7 +51,7 @@ def _stamp() -> str:
     for path in _sources():
         status = path.stat()
         digest.update(f"{path}|{status.st_mtime_ns}|{status.st_size};".encode())
-    return digest.hexdigest()[:16]
+    return digest.hexdigest()[:_STAMP_LENGTH]
 
 
 def _bases() -> list[Path]:
@@ -58,7 +59,7 @@ def _bases() -> list[Path]:
     user = os.getuid() if hasattr(os, "getuid") else "user"
     temporary = Path(tempfile.gettempdir()) / f"exactmesh-{user}"
     if os.environ.get("NUMBA_CACHE_DIR"):
-        return [Path(os.environ["NUMBA_CACHE_DIR"]), temporary]
+        return [Path(os.environ["NUMBA_CACHE_DIR"]) / "exactmesh", temporary]
     home = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     return [Path(home) / "exactmesh", temporary]
 
@@ -70,7 +71,7 @@ def _is_foreign(folder: Path) -> bool:
 
 def _remove_unused(base: Path) -> None:
     """Remove what earlier versions left behind."""
-    for other in base.iterdir():
+    for other in base.glob("[0-9a-f]" * _STAMP_LENGTH):
         marker = other / "used"
         if marker.exists() and time.time() - marker.stat().st_mtime > _UNUSED_AFTER_SECONDS:
             shutil.rmtree(other, ignore_errors=True)
@@ -83,8 +84,8 @@ def _open_cache() -> Path:
         folder = base / stamp
         try:
             new = not folder.exists()
-            folder.mkdir(parents=True, exist_ok=True)
-            if _is_foreign(folder):
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if _is_foreign(base) or _is_foreign(folder):
                 continue
             (folder / "used").touch()
             if new:

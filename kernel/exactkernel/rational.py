@@ -9,6 +9,7 @@ interrupt after the run.
 """
 
 import ctypes
+import threading
 from collections.abc import Callable
 from typing import TypeAlias
 
@@ -67,7 +68,7 @@ _pending: list[BaseException] = []
 
 def raise_if_interrupted() -> None:
     """Raise what a signal handler raised inside a callback, if one did. Called after every compiled run."""
-    if _pending:
+    if _pending and threading.current_thread() is threading.main_thread():  # where signals are handled
         first = _pending[0]
         _pending.clear()
         raise first

@@ -72,7 +72,7 @@ def triangulate(
     target = _next_name(source) if output is None else output
     if os.path.splitext(target)[1] not in (".node", ".ele", ".npz"):
         raise typer.BadParameter(f"{target}: triangles go into .node and .ele, or .npz", param_hint="-o")
-    if os.path.realpath(source) in (os.path.realpath(target), os.path.realpath(f"{os.path.splitext(target)[0]}.node")):
+    if _files_of(source) & _files_of(target):
         raise typer.BadParameter(f"{target}: would overwrite the input", param_hint="-o")
     from exactkernel.jit import is_cache_warm
     from exactmesh.delaunay import delaunay
@@ -94,6 +94,13 @@ def triangulate(
     if duplicates is not None:
         typer.echo(duplicates)
     typer.echo(f"{len(triangulation.points)} points, {len(triangulation.triangles)} triangles: {' '.join(paths)}")
+
+
+def _files_of(path: str) -> set[str]:
+    """The files that are read or written under this name: of Triangle's formats, all with the same stem."""
+    stem, suffix = os.path.splitext(path)
+    names = [f"{stem}.node", f"{stem}.ele"] if suffix in (".node", ".ele") else [path]
+    return {os.path.realpath(name) for name in names}
 
 
 def _next_name(source: str) -> str:

@@ -13,13 +13,12 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
-from exactkernel.context import Context, scaled_into_window
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.incircle import incircle_perturbed_adaptive
 from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
-from exactmesh.chunks import chunk_size
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin, split_face, swap
 from exactmesh.errors import CollinearPointsError, TooFewPointsError, TooManyPointsError
 from exactmesh.extract import triangles_of

@@ -12,13 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points, vertex_indices
-from exactkernel.context import Context, scaled_into_window
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.incircle import incircle_perturbed, incircle_perturbed_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, PointLike, Sign
-from exactmesh.chunks import chunk_size
 from exactmesh.connectivity import neighbors_of, rings_of
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
 from exactmesh.errors import InadmissibleError, TooFewPointsError, TopologyError
@@ -198,7 +197,7 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
     corners = vertex_indices(triangles)
     report = verify(given, corners, claims=_TRIANGULATION)
     if not report.ok:
-        fault = report.violations[0]
+        fault = next(v for v in report.violations if v.property in (*report.claims, Property.EDGE_MANIFOLD))
         raise InadmissibleError(
             f"the triangles are no triangulation of the points' hull: {fault.message}",
             report=report,

@@ -7,12 +7,11 @@ steps than there are triangles gives way to a look at every triangle, so that lo
 
 import numpy as np
 
-from exactkernel.context import Context, scaled_into_window
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.chunks import chunk_size
 from exactmesh.ordering import IndexArray, insertion_order
 
 __all__ = ["locate_points"]

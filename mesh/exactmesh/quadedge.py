@@ -226,7 +226,7 @@ def _first_broken(ring: EdgeArray, count: int) -> int:
 
 @jit
 def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
-    """Count the rings of the primal (parity 0) or dual (1) quarter-edges; seen is scratch, all zero."""
+    """Count the rings of the primal (parity 0) or dual (1) quarter-edges; seen, all 0, becomes their numbers from 1."""
     orbits = 0
     for q in range(parity, 4 * count, 2):
         if ring[q] == _FREE or seen[q] != 0:
@@ -234,7 +234,7 @@ def _orbits(ring: EdgeArray, count: int, parity: int, seen: EdgeArray) -> int:
         orbits += 1
         e = q
         while seen[e] == 0:
-            seen[e] = 1
+            seen[e] = orbits
             e = ring[e]
     return orbits
 
@@ -319,12 +319,32 @@ class QuadEdge:
             given = vertex_indices(neighbors, "neighbors")
             check_neighbors(corners, given)
         surface = cls.from_arrays(*rings_of(corners, given))
-        if surface.counts()[0] != np.count_nonzero(np.bincount(corners.reshape(-1))):
-            raise TopologyError("the triangles are pinched: some meet in a vertex without an edge between them")
+        pinched = surface._pinched()
+        if pinched.size:
+            raise TopologyError(
+                f"the triangles at vertex {pinched[0]} are pinched: they meet there without an edge between them",
+                indices=pinched.tolist(),
+            )
         return surface
 
+    def _pinched(self) -> IntArray:
+        """Return the vertices that are the origin of more than one ring."""
+        number = np.zeros(4 * self._count, dtype=np.int32)
+        rings = _orbits(self._ring, self._count, 0, number)
+        origin = np.empty(rings + 1, dtype=np.int32)
+        origin[number[0::2]] = self._vertex[: 2 * self._count]
+        names, uses = np.unique(origin[1:], return_counts=True)
+        pinched: IntArray = names[uses > 1]
+        return pinched
+
     def triangles(self) -> IntArray:
-        """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise. O(edges)."""
+        """Return the corners of the triangular faces that are not OUTSIDE, int32 (m, 3), counterclockwise.
+
+        O(edges) but for sorting the vertices.
+
+        Raises:
+            TopologyError: a corner was given no vertex.
+        """
         half = np.arange(2 * self._count, dtype=np.int32)
         after = self._ring[(2 * half) ^ 3] ^ 3  # left_next of every primal edge, nonsense for deleted ones
         live = self._ring[2 * half] != _FREE
@@ -332,8 +352,12 @@ class QuadEdge:
         triangular = (after[after[after >> 1] >> 1] == 2 * half) & (after != 2 * half)  # a loop comes back as well
         wanted = live & triangular & (self._face[half ^ 1] != OUTSIDE)
         slot = np.where(wanted, -1, OUTER).astype(np.int32)
-        same = np.arange(self._vertex.max(initial=0) + 1, dtype=np.int32)
-        return triangles_of(self._ring, self._vertex, slot, same)[0]
+        names, vertex = np.unique(self._vertex[: 2 * self._count], return_inverse=True)
+        triangles, _ = triangles_of(self._ring, vertex.astype(np.int32), slot, names)
+        nameless = np.flatnonzero((triangles < 0).any(axis=1))
+        if nameless.size:
+            raise TopologyError(f"the triangle {triangles[nameless[0]].tolist()} has a corner that is no vertex")
+        return triangles
 
     def __len__(self) -> int:
         """Return the number of edges (each with its four quarter-edges)."""

@@ -11,6 +11,7 @@ from exactkernel.arrays import finite_points
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW, Context
 from exactkernel.types import FloatArray, IntArray, Stage
 from exactmesh.connectivity import edges_of, hull_of
+from exactmesh.errors import ShapeError, TopologyError
 from exactmesh.locate import locate_points
 from exactmesh.quadedge import QuadEdge
 from exactmesh.quality import Statistics, statistics_of
@@ -75,6 +76,16 @@ class Triangulation:
         return Triangulation, (self.points, self.triangles, self.neighbors, self.representative, self.work)
 
     def __post_init__(self) -> None:
+        vertices, faces = len(self.points), len(self.triangles)
+        for name, numbers, low, high in (
+            ("triangles", self.triangles, 0, vertices),
+            ("neighbors", self.neighbors, -1, faces),
+            ("representative", self.representative, 0, vertices),
+        ):
+            if numbers.size and not low <= numbers.min() <= numbers.max() < high:
+                raise TopologyError(f"{name} has entries outside of {low} .. {high - 1}")
+        if self.points.shape != (vertices, 2) or not self.triangles.shape == self.neighbors.shape == (faces, 3):
+            raise ShapeError("points are (n, 2), triangles and neighbors (m, 3)")
         for array in (self.points, self.triangles, self.neighbors, self.representative):
             array.setflags(write=False)
 

@@ -24,8 +24,9 @@ def write_whole(files: Mapping[str, Writer]) -> None:
             place = os.path.realpath(path)  # a symbolic link stays one
             if os.path.isdir(place):
                 raise IsADirectoryError(21, "Is a directory", path)
-            finished[place] = temporary = f"{place}.{os.getpid()}.tmp"
+            temporary = f"{place}.{os.getpid()}.tmp"
             with open(temporary, "xb") as stream:
+                finished[place] = temporary  # ours only now
                 write(stream)
             if os.path.exists(place):
                 shutil.copymode(place, temporary)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.context import Context
+from exactkernel.context import Context, chunk_size
 from exactkernel.incircle import incircle_adaptive
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
@@ -144,8 +144,9 @@ def linked(points: FloatArray, context: Context, triangles: IntArray) -> Links:
     fill_slots(triangles, first, links.slots)
     for v in large:
         links.slots[first[v] : first[v + 1]].sort()
-    for begin in range(0, len(points), _CHUNK):
-        match_slots(context, points, links, begin, min(begin + _CHUNK, len(points)))
+    step = chunk_size(context, _CHUNK)
+    for begin in range(0, len(points), step):
+        match_slots(context, points, links, begin, min(begin + step, len(points)))
         raise_if_interrupted()
     return links
 

@@ -125,12 +125,16 @@ def claimed_properties(claims: Collection[Property | str] | None) -> tuple[Prope
     """Return the claims in the order of the enum; None stands for a Delaunay triangulation.
 
     Raises:
-        ChoiceError: a claim is no property.
+        ChoiceError: a claim is no property, or there is none.
     """
     if claims is None:
         return DELAUNAY_TRIANGULATION
-    if isinstance(claims, str):
-        claims = [claims]
+    try:
+        claims = (claims,) if isinstance(claims, str) else tuple(claims)
+    except TypeError:
+        raise ChoiceError(f"claims={claims!r} is no collection of properties") from None
+    if not claims:
+        raise ChoiceError("no claim: nothing would be promised; None claims a Delaunay triangulation")
     unknown = [claim for claim in claims if claim not in tuple(Property)]
     if unknown:
         raise ChoiceError(f"{unknown[0]!r} is no property; choose from {', '.join(Property)}")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exactkernel.context import Context
+from exactkernel.context import Context, chunk_size
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
@@ -173,8 +173,9 @@ def swept(k: Context, points: FloatArray, origin: IndexArray, target: IndexArray
         first_high=np.searchsorted(high[order][ending], ranks),
     )
     status, witness = empty_status(len(order)), np.full(2, NIL, dtype=np.intp)
-    for begin in range(0, len(points), _CHUNK):
-        fault = sweep(k, segments, status, begin, min(begin + _CHUNK, len(points)), witness)
+    step = chunk_size(k, _CHUNK)
+    for begin in range(0, len(points), step):
+        fault = sweep(k, segments, status, begin, min(begin + step, len(points)), witness)
         raise_if_interrupted()
         if fault != PROPER:
             return fault, int(order[witness[0]]), int(order[witness[1]])

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exactkernel.context import Context
+from exactkernel.context import Context, chunk_size
 from exactkernel.diametral import diametral_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
@@ -65,8 +65,9 @@ def classified(mesh: Mesh) -> Shapes:
     """Return the signs of all triangles. O(m)."""
     m = len(mesh.triangles)
     shapes = Shapes(np.empty(m, dtype=np.int8), np.empty(m, dtype=np.int8))
-    for start in range(0, m, CHUNK):
-        part = slice(start, start + CHUNK)
+    step = chunk_size(mesh.context, CHUNK)
+    for start in range(0, m, step):
+        part = slice(start, start + step)
         classify(
             mesh.context,
             mesh.coordinates,
