@@ -7,7 +7,7 @@ same path as those inside. Reference [Guibas 1985], [Lawson 1977], [Amenta 2003]
 """
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -216,12 +216,43 @@ def _begin(xy: FloatArray, k: Context, order: IndexArray, ring: EdgeArray, org: 
     return 0
 
 
+class Insertion(NamedTuple):
+    """The Delaunay triangulation while it is still a quad-edge; its vertices are positions in the order of insertion.
+
+    Attributes:
+        k: for predicates on ``xy``.
+        xy: the coordinates, flat, scaled; the ghost vertex is ``len(xy) // 2``.
+        order: which point of the input stands at each position.
+        ring, org: the quad-edge, of 3 n edges at most.
+        twin: the vertex in whose place each position lies: itself, if it is a vertex.
+        edges, flips: how many edges there are, and how many flips it took.
+    """
+
+    k: Context
+    xy: FloatArray
+    order: IndexArray
+    ring: EdgeArray
+    org: EdgeArray
+    twin: EdgeArray
+    edges: int
+    flips: int
+
+
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
-def _insert_all(
-    xy: FloatArray, k: Context, order: IndexArray, progress: Progress | None
-) -> tuple[EdgeArray, EdgeArray, EdgeArray, int, int]:
-    """Build the quad-edge of xy (flat, in order of insertion); return (ring, org, twin, edges, flips)."""
-    n = len(xy) // 2
+def insert_points(given: FloatArray, *, seed: int = 0, progress: Progress | None = None) -> Insertion:
+    """Return the Delaunay triangulation of finite points, as a quad-edge.
+
+    Raises:
+        TooFewPointsError, CollinearPointsError, TooManyPointsError, SeedError: as for :func:`delaunay`.
+    """
+    if len(given) < 3:
+        raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
+    if len(given) > MAX_POINTS:
+        raise TooManyPointsError(f"{len(given)} points; at most {MAX_POINTS} fit 32-bit edge numbers")
+    scaled, k = scaled_into_window(given)
+    order = insertion_order(scaled, seed)
+    xy = scaled.take(order, axis=0).reshape(-1)
+    n = len(order)
     ring = np.empty(12 * n, dtype=np.int32)  # n vertices and the ghost have 3 (n + 1) - 6 edges
     org = np.empty(6 * n, dtype=np.int32)
     twin = np.arange(n, dtype=np.int32)
@@ -235,10 +266,12 @@ def _insert_all(
         raise_if_interrupted()
         if progress is not None:
             progress(stop, n)
-    return ring, org, twin, int(edges), int(flips)
+    if edges == 0:
+        _refuse_flat(given)
+    return Insertion(k, xy, order, ring, org, twin, int(edges), int(flips))
 
 
-def _number_vertices(order: IndexArray, twin: EdgeArray) -> tuple[IndexArray, EdgeArray, EdgeArray]:
+def number_vertices(order: IndexArray, twin: EdgeArray) -> tuple[IndexArray, EdgeArray, EdgeArray]:
     """Return (the input points that become vertices, the vertex at each position of order, of each input point).
 
     The vertices are numbered in the order of the input; of equal points the first is the vertex.
@@ -291,22 +324,14 @@ def delaunay(points: npt.ArrayLike, *, seed: int = 0, progress: Progress | None 
     [0, 1, 2, 3]
     """
     given = finite_points(points)
-    if len(given) < 3:
-        raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
-    if len(given) > MAX_POINTS:
-        raise TooManyPointsError(f"{len(given)} points; at most {MAX_POINTS} fit 32-bit edge numbers")
-    scaled, k = scaled_into_window(given)
-    order = insertion_order(scaled, seed)
-    xy = scaled.take(order, axis=0).reshape(-1)
-    ring, org, twin, edges, flips = _insert_all(xy, k, order, progress)
-    if edges == 0:
-        _refuse_flat(given)
-    kept, vertex, representative = _number_vertices(order, twin)
-    triangles, neighbors = triangles_of(ring, org, np.full(2 * edges, -1, dtype=np.int32), vertex)
+    built = insert_points(given, seed=seed, progress=progress)
+    kept, vertex, representative = number_vertices(built.order, built.twin)
+    slot = np.full(2 * built.edges, -1, dtype=np.int32)
+    triangles, neighbors = triangles_of(built.ring, built.org, slot, vertex)
     return Triangulation(
         points=given.take(kept, axis=0),
         triangles=triangles,
         neighbors=neighbors,
         representative=representative,
-        work=work_of(k, flips),
+        work=work_of(built.k, built.flips),
     )
