@@ -96,15 +96,21 @@ class Truth:
         if self.domain is None:
             return all(domain_oracle.is_chain(self.points, edges, a, b) for a, b in self.pairs)
         corners = {self.points[v] for t in triangles for v in t}
+        if all(self._whole(s, edges) for s in self.lines):
+            return True
         drawn = [tuple(self.points[v] for v in edge) for edge in edges]
         for s, t in combinations(self.lines, 2):
             crossing = domain_oracle.cross_inside(s, t)
-            if crossing is not None and crossing not in corners:
+            if crossing is not None and crossing not in corners and crossing not in {p for s in self.lines for p in s}:
                 return False
         return all(
             self._part_present(s, ends, triangles, corners, drawn)
             for s, ends in zip(self.lines, self.parts, strict=True)
         )
+
+    def _whole(self, s: Line, edges: set[frozenset[int]]) -> bool:
+        starts, ends = ([v for edge in edges for v in edge if self.points[v] == p] for p in s)
+        return any(domain_oracle.is_chain(self.points, edges, a, b) for a in set(starts) for b in set(ends))
 
     def _part_present(
         self,
@@ -114,15 +120,11 @@ class Truth:
         corners: set[RationalPoint],
         drawn: Sequence[Line],
     ) -> bool:
-        for p in ends:
-            if p not in corners and (self.in_closed_domain(p) or any(self._within(p, t) for t in triangles)):
-                return False
-        for p, q in zip(ends, ends[1:], strict=False):
-            m = domain_oracle.middle(p, q)
-            if not self.in_closed_domain(m) and not any(self._within(m, t) for t in triangles):
-                continue
-            along = [e for e in drawn if all(oracles.on_segment(v, *s) for v in e)]
-            if not any(oracles.on_segment(m, *e) for e in along):
+        along = [e for e in drawn if all(oracles.on_segment(v, *s) for v in e)]
+        middles = [domain_oracle.middle(p, q) for p, q in zip(ends, ends[1:], strict=False)]
+        for p in [*ends, *middles]:
+            needed = self.in_closed_domain(p) or any(self._within(p, t) for t in triangles)
+            if needed and p not in corners and not any(oracles.on_segment(p, *e) for e in along):
                 return False
         return True
 

@@ -161,7 +161,8 @@ def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) ->
     if outline.even_odd:
         require_even_ends(outline, first_at_position(outline.points))
     present = chained(tiled.mesh, tiled.links, corner[outline.segments], tiled.marks, bits)
-    return Placed(outline, points, holes, regions, corner, present)
+    marks = tiled.marks if present.all() else tiled.marks.copy()
+    return Placed(outline, points, holes, regions, corner, present, marks)
 
 
 def _survey(tiled: Tiled, placed: Placed, free: IndexArray, bits: int) -> Survey | None:

@@ -39,6 +39,7 @@ class Placed:
         coordinates, holes, regions: its points in the coordinates of the mesh.
         corner: (n,) the corner at each point's position, -1 where there is none.
         present: (s,) which segments are chains of edges from end to end.
+        marks: of the edges, by these segments only.
     """
 
     outline: Outline
@@ -47,6 +48,7 @@ class Placed:
     regions: FloatArray
     corner: IndexArray
     present: npt.NDArray[np.bool_]
+    marks: Marks
 
     @property
     def absent(self) -> IndexArray:
@@ -97,8 +99,9 @@ def surveyed(
         inner: whether the segments within the union cut as well.
     """
     slots = slots_of(links, BOUNDARY)
-    if inner:
-        slots = np.concatenate([slots, np.flatnonzero((marks & IN_DOMAIN > 0) & (links.kinds != BOUNDARY))])
+    if inner or (placed is not None and placed.outline.even_odd and placed.absent.size):
+        cutting = marks & (IN_DOMAIN if inner else ODD) > 0  # what is odd counts, together with what is not found yet
+        slots = np.concatenate([slots, np.flatnonzero(cutting & (links.kinds != BOUNDARY))])
     none = np.empty(0, dtype=np.intp)
     stray, holes, loose = none, np.empty((0, 2)), None
     queries = [mesh.coordinates[unused]]
@@ -107,14 +110,28 @@ def surveyed(
         queries = [holes, placed.coordinates[stray], mesh.coordinates[unused]]
         ends = placed.outline.segments[placed.absent]
         loose = (placed.coordinates[ends], placed.corner[ends]) if len(ends) else None
-    faces = faces_of(mesh, links, marks, slots, loose, np.concatenate(queries))
+    odd = (marks if placed is None else placed.marks)[slots] & ODD > 0
+    faces = faces_of(mesh, links, slots, odd, loose, np.concatenate(queries))
     if not inner:
         joined_marks(faces, marks, bits)
     sides, on = faces.answers
     rigid = (sides >> 1) < len(slots)
     covered = faces.covered(sides) | (on & rigid)
     h, s = len(holes), len(stray)
-    return Survey(faces, sides[:h], ~on[:h], stray, covered[h : h + s], covered[h + s :])
+    return Survey(faces, sides[:h], ~_on_segments(faces, marks)[:h], stray, covered[h : h + s], covered[h + s :])
+
+
+def _on_segments(faces: Faces, marks: Marks) -> npt.NDArray[np.bool_]:
+    """Tell which queries lie on segments, rather than on bare edges of the mesh."""
+    plane, (sides, on) = faces.plane, faces.answers
+    drawn = plane.sort == LOOSE
+    drawn[: len(faces.slots)] = marks[faces.slots] & IN_DOMAIN > 0
+    at_node = plane.node[faces.queries] == 1
+    drawn_edges = faces.edges[drawn[faces.edges]]
+    ends = np.concatenate([plane.low[drawn_edges], plane.high[drawn_edges]])
+    edge = np.minimum(sides >> 1, len(drawn) - 1)
+    found: npt.NDArray[np.bool_] = np.where(at_node, np.isin(faces.queries, ends), on & drawn[edge])
+    return found
 
 
 def check_inner_parts(mesh: Mesh, links: Links, marks: Marks, placed: Placed, survey: Survey, bits: int) -> Finding:
@@ -163,9 +180,10 @@ def _meeting(mesh: Mesh, placed: Placed, faces: Faces) -> Finding:
     plane, (e, f) = faces.plane, faces.plane.witness.tolist()
     if faces.outcome == CROSSING:
         e, f = (e, f) if plane.sort[e] == LOOSE else (f, e)
-        fault = f"crosses {_edge(mesh, faces, f)}"
         if plane.sort[f] == LOOSE:
-            fault = f"crosses segment {placed.absent[plane.source[f]]} where no corner is"
+            fault = f"crosses segment {placed.absent[plane.source[f]]} where no corner and no end of a segment is"
+        else:
+            fault = f"crosses {_edge(mesh, faces, f)}"
         i, kind = int(placed.absent[plane.source[e]]), Kind.CROSSING
     else:
         there = (placed.coordinates == plane.points[f]).all(axis=1)

@@ -138,8 +138,8 @@ def _plane(points: FloatArray, node: npt.NDArray[np.int8], low: IndexArray, high
 def faces_of(
     mesh: Mesh,
     links: Links,
-    marks: Marks,
     slots: IndexArray,
+    odd: npt.NDArray[np.bool_],
     loose: tuple[FloatArray, IndexArray] | None = None,
     queries: FloatArray | None = None,
 ) -> Faces:
@@ -148,8 +148,8 @@ def faces_of(
     Args:
         mesh: admissible triangles.
         links: theirs.
-        marks: of their edges.
         slots: the edges of the mesh that cut, all of the boundary among them.
+        odd: for each of these, whether an odd number of segments that are not loose lies there.
         loose: (s, 2, 2) ends of segments in the mesh's coordinates, and (s, 2) the vertices of the mesh there or -1.
         queries: (q, 2) points in the mesh's coordinates.
     """
@@ -157,25 +157,24 @@ def faces_of(
     segments = Segments(ends, corners, np.arange(len(ends)))
     asked = np.empty((0, 2)) if queries is None else queries
     while True:
-        faces = _swept(mesh, links, marks, slots, segments, asked)
-        v = _corner_of_crossing(mesh, links, faces)
-        if v is None:
+        faces = _swept(mesh, links, slots, odd, segments, asked)
+        place = _place_of_crossing(mesh, links, faces)
+        if place is None:
             flatten(faces.plane.face)
             return faces
-        segments = _cut_at(mesh, segments, v)
+        segments = _cut_at(segments, *place)
 
 
-def _cut_at(mesh: Mesh, segments: Segments, v: int) -> Segments:
-    """Cut the segments that run through a corner."""
+def _cut_at(segments: Segments, point: FloatArray, corner: int) -> Segments:
+    """Cut the segments that run through a point."""
     ends, corners, source = segments.ends, segments.corners, segments.source
-    point = mesh.coordinates[v]
     strictly = [_before(ends[:, i], point) & _before(point, ends[:, 1 - i]) for i in range(2)]
     through = np.flatnonzero(strictly[0] | strictly[1])
     through = through[orient2d_batch(ends[through, 0], ends[through, 1], point) == 0]
     halves = np.repeat(ends[through], 2, axis=0)
     names = np.repeat(corners[through], 2, axis=0)
     halves[0::2, 1] = halves[1::2, 0] = point
-    names[0::2, 1] = names[1::2, 0] = v
+    names[0::2, 1] = names[1::2, 0] = corner
     kept = np.ones(len(ends), dtype=np.bool_)
     kept[through] = False
     return Segments(
@@ -190,9 +189,10 @@ def _before(p: FloatArray, q: FloatArray) -> npt.NDArray[np.bool_]:
     return found
 
 
-def _corner_of_crossing(mesh: Mesh, links: Links, faces: Faces) -> int | None:
-    """Return the corner where two loose edges cross, if that is where they do: then segments are cut there before the
-    sweep, since it looks ahead and knows of no corner that is no end."""
+def _place_of_crossing(mesh: Mesh, links: Links, faces: Faces) -> tuple[FloatArray, int] | None:
+    """Return where two loose edges cross, if that is a corner or an end of a segment; the corner or -1 besides.
+
+    Then segments are cut there before the sweep: it looks ahead, and knows only of corners that are ends."""
     if faces.outcome != CROSSING:
         return None
     plane = faces.plane
@@ -208,15 +208,19 @@ def _corner_of_crossing(mesh: Mesh, links: Links, faces: Faces) -> int | None:
     x, y = ax + s * (bx - ax), ay + s * (by - ay)
     if Fraction(float(x)) != x or Fraction(float(y)) != y:
         return None
-    there = (mesh.coordinates == (float(x), float(y))).all(axis=1) & (links.first[1:] > links.first[:-1])
-    return int(np.flatnonzero(there)[0]) if there.any() else None
+    point = np.array((float(x), float(y)))
+    corner = np.flatnonzero((mesh.coordinates == point).all(axis=1) & (links.first[1:] > links.first[:-1]))
+    if corner.size:
+        return point, int(corner[0])
+    end = (plane.points == point).all(axis=1) & (plane.node == 1)
+    return (point, -1) if end.any() else None
 
 
 def _swept(
     mesh: Mesh,
     links: Links,
-    marks: Marks,
     slots: IndexArray,
+    odd: npt.NDArray[np.bool_],
     segments: Segments,
     queries: FloatArray,
 ) -> Faces:
@@ -239,7 +243,7 @@ def _swept(
     plane = _plane(points, node, low, high, bool(len(ends)))
     rigid = len(slots)
     plane.sort[:rigid] = np.where(links.kinds[slots] == BOUNDARY, np.where(a < b, UP, DOWN), INNER)
-    plane.odd[:rigid] = (marks[slots] & ODD) > 0
+    plane.odd[:rigid] = odd
     plane.odd[rigid : rigid + len(ends)] = 1
     plane.source[:rigid] = slots
     plane.source[rigid : rigid + len(ends)] = segments.source

@@ -150,21 +150,21 @@ def seek_direction(k: Context, p: Plane, status: Status, e: int) -> tuple[int, i
 
 
 @jit
-def reaches(k: Context, p: Plane, e: int, v: int) -> bool:
-    """Tell whether an edge of the status contains v."""
-    return bool(p.high[e] == v or (p.sort[e] == LOOSE and turn(k, p.points, p.low[e], p.high[e], v) == 0))
+def reaches(k: Context, p: Plane, any_loose: bool, e: int, v: int) -> bool:
+    """Tell whether an edge of the status contains v. Among rigid ones, only those that end there do."""
+    return bool(p.high[e] == v or (any_loose and turn(k, p.points, p.low[e], p.high[e], v) == 0))
 
 
 @jit
-def clear(k: Context, p: Plane, status: Status, v: int, e: int) -> tuple[int, int, int]:
+def clear(k: Context, p: Plane, status: Status, any_loose: bool, v: int, e: int) -> tuple[int, int, int]:
     """Take the edges that contain v out of the status, e one of them; cut those that do not end there.
 
     Return how that went, and the neighbours below and above v.
     """
-    while status.below[e] != NIL and reaches(k, p, status.below[e], v):
+    while status.below[e] != NIL and reaches(k, p, any_loose, status.below[e], v):
         e = status.below[e]
     below = int(status.below[e])
-    while e != NIL and reaches(k, p, e, v):
+    while e != NIL and reaches(k, p, any_loose, e, v):
         above = int(status.above[e])
         if p.high[e] != v:
             if p.sort[e] != LOOSE:
@@ -281,7 +281,7 @@ def sweep_plane(k: Context, p: Plane, status: Status, any_loose: bool, v_begin: 
             below, above, e = seek(k, p, status, v)
         if e != NIL:
             p.place[v] = 2 * e
-            outcome, below, above = clear(k, p, status, v, e)
+            outcome, below, above = clear(k, p, status, any_loose, v, e)
             if outcome != WHOLE:
                 return outcome
         outcome, some = begin(k, p, status, v)

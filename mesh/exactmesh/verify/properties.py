@@ -64,8 +64,8 @@ class Property(StrEnum):
     SEGMENTS_PRESENT = "segments_present"
     """Every segment is a strictly monotone chain of edges of the triangles, exactly collinear, from end to end, by
     index. Of a segment of the domain, between points of the mesh at the positions of its ends, parts may be missing that
-    lie outside of the closed domain and outside of all triangles; but inside of two such segments no crossing may lie
-    that is no corner. UNDECIDED without ADMISSIBLE if some segment is no chain."""
+    lie outside of the closed domain and outside of all triangles; but two such segments may only cross in a corner or in
+    an end of a segment. UNDECIDED without ADMISSIBLE if some segment is no chain."""
     CONSTRAINED_DELAUNAY = "constrained_delaunay"
     """Every triangle has an area, and no point of the set, used or not, that is strictly inside its circumcircle is
     visible from its interior: for no x in the interior of the triangle does the open line segment from x to the point

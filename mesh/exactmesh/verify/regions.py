@@ -92,7 +92,8 @@ def check_labels(
     if finding.verdict is Verdict.FAILS or not len(seeds):
         return finding
     segments = np.flatnonzero((marks & (CONSTRAINED | IN_DOMAIN) > 0) & (links.kinds != BOUNDARY))
-    faces = faces_of(mesh, links, marks, np.concatenate([slots_of(links, BOUNDARY), segments]), None, seeds)
+    slots = np.concatenate([slots_of(links, BOUNDARY), segments])
+    faces = faces_of(mesh, links, slots, np.zeros(len(slots), dtype=np.bool_), None, seeds)
     return _seeds(mesh, links, faces, rows, across, labels, attributes)
 
 
