@@ -325,7 +325,7 @@ class TestRandomDomains:
             assert not disagreements(truth, triangles), (truth.given, truth.pairs, truth.domain, triangles)
 
 
-#: Found by fuzzing, each by a fault that the checker had: points, triangles, domain.
+#: Points, triangles, domain; most were found by fuzzing.
 REGRESSIONS: list[tuple[Points, list[Triangle], Plain]] = [
     (  # a segment that ends inside an edge of the boundary, from within
         [(3, 1), (3, 0), (3, 2), (2, 0), (0, 0)],
@@ -357,6 +357,11 @@ REGRESSIONS: list[tuple[Points, list[Triangle], Plain]] = [
             "even-odd",
         ),
     ),
+    (  # a hole that has no point
+        [(0, 0), (8, 0), (0, 8), (1, 1), (3, 1), (1, 3)],
+        [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)],
+        Plain.of([(0, 0), (8, 0), (0, 8), (1, 1), (3, 1), (1, 3)], [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3)]),
+    ),
     (  # absent segments that cross in an end of a third one
         [(1, 1), (2, 1), (1, 2), (1, 0), (0, 1)],
         [],
@@ -371,7 +376,7 @@ REGRESSIONS: list[tuple[Points, list[Triangle], Plain]] = [
 
 
 class TestRegressions:
-    """What the checker once got wrong."""
+    """What the checker once got wrong, or might."""
 
     @pytest.mark.parametrize(("points", "triangles", "domain"), REGRESSIONS)
     def test_verdicts(self, points: Points, triangles: list[Triangle], domain: Plain) -> None:
