@@ -141,7 +141,7 @@ class Truth:
         return self.visible[key]
 
     def covers(self, triangles: Sequence[Triangle]) -> bool:
-        columns = [self.cover[t] for t in triangles]
+        columns = [self.cover[min(a, b, c), sorted((a, b, c))[1], max(a, b, c)] for a, b, c in triangles]
         return [any(column[i] for column in columns) for i in range(len(self.inside))] == self.inside
 
     def verdicts(self, triangles: Sequence[Triangle]) -> dict[Property, bool]:
@@ -237,6 +237,14 @@ DOMAINS: dict[str, Case] = {
     ),
     "all carved": (SQUARE, SQUARE, [*RIM, (0, 4)], [(0.5, 1)], "seeds"),
     "doubled": (SQUARE, [*SQUARE, (0, 0), (2, 2)], [*RIM, (0, 2), (5, 6)], (), "even-odd"),
+    "a rim twice": (SQUARE, [*SQUARE[:4], *SQUARE[:4]], [*RIM, (4, 5), (5, 6), (6, 7), (7, 4)], (), "even-odd"),
+    "a rim twice and a hole": (
+        SQUARE,
+        [*SQUARE[:4], *SQUARE[:4]],
+        [*RIM, (4, 5), (5, 6), (6, 7), (7, 4)],
+        [(1, -1)],
+        "even-odd",
+    ),
     "overlapping": (SQUARE, [*SQUARE, (1, 0)], [(0, 1), (5, 1), (0, 5), (1, 2), (2, 3), (3, 0)], (), "seeds"),
     "open": (SQUARE, SQUARE, RIM[:3], (), "seeds"),
     "hole and parity": (SQUARE, SQUARE, [*RIM, (0, 4), (4, 2), (0, 2)], [(0.5, 1)], "even-odd"),

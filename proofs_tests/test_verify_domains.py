@@ -7,7 +7,16 @@ from random import Random
 import numpy as np
 import pytest
 from proofs_tests.test_verify import STAR
-from proofs_tests.test_verify_constrained import DOMAINS, REGRESSIONS, SQUARE, Plain, Truth, all_sets, disagreements
+from proofs_tests.test_verify_constrained import (
+    DOMAINS,
+    REGRESSIONS,
+    SQUARE,
+    WITH_SEGMENTS,
+    Plain,
+    Truth,
+    all_sets,
+    disagreements,
+)
 
 from exactkernel import NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
@@ -24,6 +33,7 @@ from exactmesh.verify import (
     Verdict,
     constrained,
     cover,
+    spokes,
     verify,
 )
 from exactmesh.verify.properties import asked_properties
@@ -282,6 +292,33 @@ class TestRegions:
         )
         missing = verify(SQUARE, QUARTERS[:2], segments=[(1, 3)], labels=[1, 1])
         assert missing.findings[Property.REGIONS].because == (Property.SEGMENTS_PRESENT,)
+
+
+@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+class TestBundles:
+    """Chains through vertices of large degree are found by angle: the verdicts are the same."""
+
+    @pytest.mark.parametrize("name", ["through a vertex", "inside", "two at one position"])
+    def test_every_set(self, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(spokes, "_LARGE", 0)
+        points, segments = WITH_SEGMENTS[name]
+        truth = Truth(points, segments)
+        for triangles in list(all_sets(points))[::3]:
+            assert not disagreements(truth, triangles), triangles
+
+    def test_a_bundle(self) -> None:
+        """Segments through the centre of a fan."""
+        n = 50
+        upper = [(2 * i - n + 1.0, float(n)) for i in range(n)]
+        points = np.array([(0.0, 0.0), *upper, *((-x, -y) for x, y in upper)])
+        order = np.argsort(np.arctan2(points[1:, 1], points[1:, 0])) + 1
+        fan = np.stack([np.zeros(2 * n, dtype=np.int64), order, np.roll(order, -1)], axis=1)
+        through = [(1 + i, 1 + n + i) for i in range(n)]
+        assert verify(points, fan, segments=through).verdict(Property.SEGMENTS_PRESENT) is Verdict.HOLDS
+        missed = verify(points, fan, segments=[*through, (1, n + 7), (n + 1, n)])
+        assert [violation.vertices for violation in missed.findings[Property.SEGMENTS_PRESENT].violations] == [
+            (1, n + 7)
+        ]
 
 
 class TestInput:

@@ -11,6 +11,7 @@ from exactkernel.types import FloatArray
 from exactmesh.verify.boundary import lexicographically_before
 from exactmesh.verify.links import _LOW, Links, slot_of
 from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.spokes import Spokes, first_spoke, spokes_of
 from exactmesh.verify.witness import IndexArray
 
 __all__ = ["CONSTRAINED", "IN_DOMAIN", "ODD", "Marks", "chained", "edge_slot"]
@@ -36,33 +37,46 @@ def edge_slot(links: Links, v: int, w: int) -> int:
 
 
 @jit
-def next_of_chain(k: Context, points: FloatArray, links: Links, v: int, b: int) -> int:
+def lies_between(points: FloatArray, v: int, w: int, b: int) -> bool:
+    """Tell whether w is lexicographically between v and b, strictly."""
+    if lexicographically_before(points, v, w):
+        return lexicographically_before(points, w, b)
+    return lexicographically_before(points, w, v) and lexicographically_before(points, b, w)
+
+
+@jit
+def next_of_chain(k: Context, points: FloatArray, links: Links, spokes: Spokes, v: int, b: int) -> int:
     """Return a neighbour of v on the straight way to b, strictly between them or b itself, or -1."""
+    nearest = first_spoke(k, points, spokes, v, b)
+    if nearest != -2:
+        return nearest if nearest == b or (nearest >= 0 and lies_between(points, v, nearest, b)) else -1
     for i in range(links.first[v], links.first[v + 1]):
         for far in range(2):
             w = links.slots[i] & _LOW if far else links.slots[i] >> 32
             if w == b:
                 return int(w)
-            forward = lexicographically_before(points, v, w) and lexicographically_before(points, w, b)
-            if not forward and not (lexicographically_before(points, w, v) and lexicographically_before(points, b, w)):
-                continue
-            turn = orient2d_adaptive(
-                k, points[v, 0], points[v, 1], points[b, 0], points[b, 1], points[w, 0], points[w, 1]
-            )
-            if turn == 0:
+            if (
+                lies_between(points, v, w, b)
+                and orient2d_adaptive(
+                    k, points[v, 0], points[v, 1], points[b, 0], points[b, 1], points[w, 0], points[w, 1]
+                )
+                == 0
+            ):
                 return int(w)
     return -1
 
 
 @jit
-def walk_chain(k: Context, points: FloatArray, links: Links, a: int, b: int, marks: Marks, bits: int) -> bool:
+def walk_chain(
+    k: Context, points: FloatArray, links: Links, spokes: Spokes, a: int, b: int, marks: Marks, bits: int
+) -> bool:
     """Tell whether a chain leads from a to b, and write the bits at its edges; no bits, no marks.
 
     Each step leads closer to b, so that the walk ends, whatever the triangles are.
     """
     v = a
     while v != b:
-        w = next_of_chain(k, points, links, v, b)
+        w = next_of_chain(k, points, links, spokes, v, b)
         if w < 0:
             return False
         if bits:
@@ -77,6 +91,7 @@ def walk_chains(
     k: Context,
     points: FloatArray,
     links: Links,
+    spokes: Spokes,
     ends: IndexArray,
     marks: Marks,
     bits: int,
@@ -93,9 +108,9 @@ def walk_chains(
             marks[slot] = (marks[slot] | (bits & ~ODD)) ^ (bits & ODD)
             found[i] = True
             continue
-        found[i] = walk_chain(k, points, links, a, b, marks, 0)
+        found[i] = walk_chain(k, points, links, spokes, a, b, marks, 0)
         if found[i]:
-            walk_chain(k, points, links, a, b, marks, bits)
+            walk_chain(k, points, links, spokes, a, b, marks, bits)
 
 
 def chained(mesh: Mesh, links: Links, ends: IndexArray, marks: Marks, bits: int) -> npt.NDArray[np.bool_]:
@@ -108,12 +123,16 @@ def chained(mesh: Mesh, links: Links, ends: IndexArray, marks: Marks, bits: int)
         marks: (3m,) what is known about the edges.
         bits: what to add.
 
-    O(1) for a segment that is an edge; for others, the degrees of the vertices on the way.
+    O(log d) for a segment that is an edge, and for each step of the others, d being the degree there; and O(d log d)
+    once for each vertex of large degree.
     """
     found = np.empty(len(ends), dtype=np.bool_)
+    if not len(ends):
+        return found
+    spokes = spokes_of(mesh.context, mesh.coordinates, links)
     step = chunk_size(mesh.context, _CHUNK)
     for begin in range(0, len(ends), step):
         part = slice(begin, begin + step)
-        walk_chains(mesh.context, mesh.coordinates, links, ends[part], marks, bits, found[part])
+        walk_chains(mesh.context, mesh.coordinates, links, spokes, ends[part], marks, bits, found[part])
         raise_if_interrupted()
     return found
