@@ -5,7 +5,8 @@ import numpy.typing as npt
 
 from exactkernel.jit import jit
 from exactkernel.types import IntArray
-from exactmesh.cavity import Plane, Workspace, march, split_along, toward
+from exactmesh.cavity import split_along
+from exactmesh.plane import Plane, march, toward
 from exactmesh.edgealgebra import EdgeArray, dest
 
 PieceArray = npt.NDArray[np.int32]
@@ -41,7 +42,7 @@ def find_edge(plane: Plane, a: int, b: int) -> tuple[int, bool]:
 
 @jit
 def constrain_range(
-    plane: Plane, work: Workspace, ends: IntArray, order: npt.NDArray[np.int64], first: int, stop: int, pieces: PieceArray, count: int
+    plane: Plane, ends: IntArray, order: npt.NDArray[np.int64], first: int, stop: int, pieces: PieceArray, count: int
 ) -> tuple[int, int, int]:
     """Insert segments order[first .. stop - 1]; return (the next, pieces, crossed edge or -1)."""
     for turn in range(first, stop):
@@ -59,10 +60,10 @@ def constrain_range(
                 e, straight = toward(plane, a, b)
                 w = dest(plane.org, e)
                 if not straight:
-                    w, crossed, lefts, rights = march(plane, work, e, b)
+                    w, crossed, lefts, rights = march(plane, e, b)
                     if w < 0:
                         return turn, count, -1 - w
-                    e = split_along(plane, work, a, w, lefts, rights)
+                    e = split_along(plane, a, w, lefts, rights)
             plane.fixed[e >> 2] = True
             pieces[count, 0], pieces[count, 1] = e >> 2, s
             count += 1
