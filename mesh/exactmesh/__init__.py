@@ -9,13 +9,18 @@
 from exactkernel.types import Sign, Stage
 from exactmesh.delaunay import delaunay
 from exactmesh.errors import (
+    ChoiceError,
     CollinearPointsError,
     CoordinateError,
+    CrossingError,
     DegenerateError,
     ExactMeshError,
+    Fault,
+    FaultKind,
     FileFormatError,
     InadmissibleError,
     NonFiniteError,
+    PSLGError,
     SeedError,
     ShapeError,
     TooFewPointsError,
@@ -24,6 +29,7 @@ from exactmesh.errors import (
 )
 from exactmesh.ids import OUTSIDE, Face, QuarterEdge, Vertex
 from exactmesh.lawson import flip, is_flippable, is_locally_delaunay, lawson
+from exactmesh.pslg import PSLG, Carve
 from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
 from exactmesh.quality import Statistics
 from exactmesh.triangulation import Triangulation, Work
@@ -31,17 +37,24 @@ from exactmesh.verify import Orientation, Property, Report, Verdict, Verificatio
 
 __all__ = [
     "OUTSIDE",
+    "PSLG",
+    "Carve",
+    "ChoiceError",
     "CollinearPointsError",
     "CoordinateError",
+    "CrossingError",
     "DegenerateError",
     "Dual",
     "Edge",
     "ExactMeshError",
     "Face",
+    "Fault",
+    "FaultKind",
     "FileFormatError",
     "InadmissibleError",
     "NonFiniteError",
     "Orientation",
+    "PSLGError",
     "Primal",
     "Property",
     "QuadEdge",

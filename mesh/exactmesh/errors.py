@@ -1,7 +1,13 @@
 """What exactmesh raises beyond the kernel's errors; every message names the culprit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
 from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
 
 from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
 
@@ -9,19 +15,28 @@ if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "ChoiceError",
     "CollinearPointsError",
     "CoordinateError",
+    "CrossingError",
     "DegenerateError",
     "ExactMeshError",
+    "Fault",
+    "FaultKind",
     "FileFormatError",
     "InadmissibleError",
     "NonFiniteError",
+    "PSLGError",
     "SeedError",
     "ShapeError",
     "TooFewPointsError",
     "TooManyPointsError",
     "TopologyError",
 ]
+
+
+class ChoiceError(ExactMeshError):
+    """An argument that must be one of a few words is another."""
 
 
 class TooFewPointsError(ExactMeshError):
@@ -60,3 +75,92 @@ class FileFormatError(ExactMeshError):
         super().__init__(f"{place}: {message}")
         self.path = path
         self.line = line
+
+
+class FaultKind(StrEnum):
+    """What can be wrong with a planar straight line graph; the comments say what ``Fault.indices`` are."""
+
+    BAD_INDEX = "bad index"  # (segment,)
+    ZERO_LENGTH = "zero length"  # (segment,)
+    REPEATED_SEGMENT = "repeated segment"  # (first segment, later one)
+    HOLE_NOT_FINITE = "hole not finite"  # (hole,)
+    HOLE_ON_SEGMENT = "hole on a segment"  # (hole, segment)
+    HOLE_OUTSIDE = "hole outside"  # (hole,)
+    REGION_NOT_FINITE = "region not finite"  # (region,)
+    REGION_ON_SEGMENT = "region on a segment"  # (region, segment)
+    REGION_OUTSIDE = "region outside"  # (region,)
+    NOT_CLOSED = "not closed"  # (segment,)
+    INCONSISTENT_PARITY = "inconsistent parity"  # (point,)
+    RING_TOO_SHORT = "ring too short"  # (ring,)
+    NOT_A_RING = "not a ring"  # (point,)
+
+
+_REMEDIES = {
+    FaultKind.BAD_INDEX: "segments count points from 0",
+    FaultKind.ZERO_LENGTH: "leave it out",
+    FaultKind.REPEATED_SEGMENT: "leave one out",
+    FaultKind.HOLE_NOT_FINITE: "give finite coordinates",
+    FaultKind.HOLE_ON_SEGMENT: "move it into the face that is to be a hole",
+    FaultKind.HOLE_OUTSIDE: "what lies outside needs no hole: leave it out",
+    FaultKind.REGION_NOT_FINITE: "give finite numbers; a negative area means unlimited",
+    FaultKind.REGION_ON_SEGMENT: "move it into the face that it labels",
+    FaultKind.REGION_OUTSIDE: "move it into the domain, or leave it out",
+    FaultKind.NOT_CLOSED: "close the outline, or keep the hull with carve=False",
+    FaultKind.INCONSISTENT_PARITY: "close the rings, or carve by seeds",
+    FaultKind.RING_TOO_SHORT: "a ring needs three vertices at different positions",
+    FaultKind.NOT_A_RING: "in a union of rings each point is the end of two segments, or of none",
+}
+_NAMED = 3  # faults of a kind that a message spells out
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that is wrong with a PSLG: its kind, the indices of the culprits (see the kind), and a sentence."""
+
+    kind: FaultKind
+    indices: tuple[int, ...]
+    message: str
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class PSLGError(ExactMeshError):
+    """A planar straight line graph with faults: all of them in ``faults``, by kind; the message names the first ones.
+
+    ``indices`` are the first index of each fault of the first kind; ``path`` is the file that it came from, or None.
+    """
+
+    def __init__(self, faults: Sequence[Fault], *, path: str | None = None) -> None:
+        place = "" if path is None else f"{path}: "
+        super().__init__(
+            place + "; ".join(_summaries(faults)),
+            indices=[fault.indices[0] for fault in faults if fault.kind is faults[0].kind],
+        )
+        self.faults = tuple(faults)
+        self.path = path
+
+
+def _summaries(faults: Sequence[Fault]) -> Iterator[str]:
+    for kind, group in groupby(faults, key=lambda fault: fault.kind):
+        alike = list(group)
+        named = ", ".join(fault.message for fault in alike[:_NAMED])
+        more = f" and {len(alike) - _NAMED} more" if len(alike) > _NAMED else ""
+        yield f"{named}{more} ({_REMEDIES[kind]})"
+
+
+class CrossingError(ExactMeshError):
+    """Segments cross, and nobody asked to split them: ``pairs`` (k, 2) are their rows, int64, all of them.
+
+    ``indices`` are the segments that cross another, each once.
+    """
+
+    def __init__(self, pairs: npt.ArrayLike) -> None:
+        crossing = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        named = ", ".join(f"{i} and {j}" for i, j in crossing[:_NAMED].tolist())
+        more = f" and {len(crossing) - _NAMED} more pairs" if len(crossing) > _NAMED else ""
+        super().__init__(
+            f'segments cross: {named}{more} (crossings="split" makes their crossings vertices)',
+            indices=np.unique(crossing).tolist(),
+        )
+        self.pairs = crossing

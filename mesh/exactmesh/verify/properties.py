@@ -8,7 +8,7 @@ points that its three corners span; an edge of it is directed so that the corner
 from collections.abc import Collection
 from enum import StrEnum
 
-from exactkernel.errors import ExactMeshError
+from exactmesh.errors import ChoiceError
 
 __all__ = [
     "DELAUNAY_TRIANGULATION",
@@ -21,10 +21,6 @@ __all__ = [
     "claimed_properties",
     "orientation_of",
 ]
-
-
-class ChoiceError(ExactMeshError):
-    """An argument that must be one of a few words is another."""
 
 
 class Property(StrEnum):

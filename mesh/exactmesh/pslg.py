@@ -1,0 +1,176 @@
+"""The input of constrained triangulations: a planar straight line graph, validated once, then immutable."""
+
+from dataclasses import dataclass, field, fields
+from enum import StrEnum
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from exactkernel.arrays import exact_doubles, finite_points, unrounded_array
+from exactkernel.errors import ShapeError
+from exactkernel.types import FloatArray, IntArray
+from exactmesh.coincident import first_of_each, lexicographic_order
+from exactmesh.columns import MarkerArray, attributes_of, frozen, integers, markers_of, rows_for
+from exactmesh.errors import ChoiceError, PSLGError
+from exactmesh.faults import seed_faults, segment_faults
+from exactmesh.svg import svg_of
+
+__all__ = ["PSLG", "Carve"]
+
+_UNLIMITED = -1.0  # area of a region that is given without one
+
+
+class Carve(StrEnum):
+    """Which faces of the segments are the domain.
+
+    >>> Carve("even-odd")
+    <Carve.EVEN_ODD: 'even-odd'>
+    """
+
+    SEEDS = "seeds"
+    """All but the face that reaches infinity, and those that reach the seed of a hole. The rule of Triangle."""
+    EVEN_ODD = "even-odd"
+    """Those that an odd number of segments separates from infinity, so that a ring inside a ring is a hole; each of
+    several coincident segments counts. Seeds of holes take out faces besides."""
+
+    @classmethod
+    def _missing_(cls, value: object) -> Self:
+        raise ChoiceError(f"{value!r} is no rule for carving; choose from {', '.join(cls)}")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PSLG:
+    """A planar straight line graph: points, segments between them, seeds of holes and regions. Immutable.
+
+    Everything is kept as given and in its order. Points at the same position are merged in the triangulation, not
+    refused: ``representative`` and ``duplicates`` report them. Segments may overlap, cross, and meet in T-junctions;
+    what to do about crossings is for :func:`exactmesh.constrained_delaunay` to be told.
+
+    Attributes:
+        points: float64 (n, 2), y up.
+        segments: int32 (s, 2), the indices of their end points.
+        holes: float64 (h, 2), a point inside each hole, or none: (0, 2).
+        regions: float64 (r, 4): x, y of a point inside the region, its attribute, its largest triangle area (not
+            positive: unlimited; rows of three get -1).
+        point_markers: int64 (n,), or None.
+        segment_markers: int64 (s,), or None.
+        point_attributes: float64 (n, a), or None.
+        rule: which faces are the domain when it is carved.
+        representative: int32 (n,), the first point at the position of each point.
+        duplicates: int32 (k,), the points that are not the first at their position. -0.0 is 0.0.
+
+    Raises:
+        PSLGError: segments that name no point, have no length or repeat another (the same two indices), seeds that are
+            not finite, on a segment or not inside the convex hull of the points. All faults at once, in ``faults``.
+        ShapeError, CoordinateError, NonFiniteError: arrays that are none, see :func:`exactmesh.delaunay`.
+
+    O((n + s) log(n + s)) with seeds off the beaten track: O(s h) at worst for h seeds. Every decision is exact.
+
+    >>> from exactmesh import PSLG
+    >>> pslg = PSLG([(0, 0), (4, 0), (4, 3), (0, 3), (4, 3)], [(0, 1), (1, 2), (2, 3), (3, 0)], holes=[(1, 1)])
+    >>> pslg
+    PSLG(5 points, 4 segments, 1 hole, 0 regions, carve by seeds)
+    >>> pslg.representative.tolist(), pslg.duplicates.tolist()
+    ([0, 1, 2, 3, 2], [4])
+    >>> PSLG([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 3), (2, 2)])
+    Traceback (most recent call last):
+    exactmesh.errors.PSLGError: segment 1 (1, 3) has an end that does not exist: points are 0 to 2 (segments count \
+points from 0); segment 2 begins and ends in point 2 (leave it out)
+    """
+
+    points: FloatArray
+    segments: IntArray
+    holes: FloatArray
+    regions: FloatArray
+    point_markers: MarkerArray | None
+    segment_markers: MarkerArray | None
+    point_attributes: FloatArray | None
+    rule: Carve
+    representative: IntArray = field(init=False)
+    duplicates: IntArray = field(init=False)
+
+    def __init__(
+        self,
+        points: npt.ArrayLike,
+        segments: npt.ArrayLike = (),
+        *,
+        holes: npt.ArrayLike | None = None,
+        regions: npt.ArrayLike | None = None,
+        point_markers: npt.ArrayLike | None = None,
+        segment_markers: npt.ArrayLike | None = None,
+        point_attributes: npt.ArrayLike | None = None,
+        rule: Carve | str = Carve.SEEDS,
+    ) -> None:
+        coordinates = finite_points(points)
+        n, ends = len(coordinates), _pairs(segments)
+        seeds = {"hole": exact_doubles(() if holes is None else holes, "holes"), "region": _regions(regions)}
+        content: dict[str, object] = {
+            "points": coordinates,
+            "holes": seeds["hole"],
+            "regions": seeds["region"],
+            "point_markers": rows_for(markers_of(point_markers, "point_markers"), "point_markers", n),
+            "segment_markers": rows_for(markers_of(segment_markers, "segment_markers"), "segment_markers", len(ends)),
+            "point_attributes": rows_for(attributes_of(point_attributes, "point_attributes"), "point_attributes", n),
+            "rule": Carve(rule),
+        }
+        order = lexicographic_order(coordinates)
+        representative = first_of_each(coordinates, order)
+        faults, sound = segment_faults(ends, representative)
+        for what, places in seeds.items():
+            faults += seed_faults(what, places, coordinates, order, ends, sound)
+        if faults:
+            raise PSLGError(faults)
+        content["segments"] = ends.astype(np.int32)
+        content["representative"] = representative
+        content["duplicates"] = np.flatnonzero(representative != np.arange(n, dtype=np.int32)).astype(np.int32)
+        self.__setstate__(content)
+
+    def __setstate__(self, content: dict[str, object]) -> None:
+        # copies and pickles come this way as well: numpy does not pass on that an array is read-only
+        for name, value in content.items():
+            object.__setattr__(self, name, frozen(value) if isinstance(value, np.ndarray) else value)
+
+    def __repr__(self) -> str:
+        named = ((len(getattr(self, name)), name) for name in ("points", "segments", "holes", "regions"))
+        counts = ", ".join(f"{k} {name[:-1] if k == 1 else name}" for k, name in named)
+        return f"PSLG({counts}, carve by {self.rule})"
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether everything is the same, number by number."""
+        if not isinstance(other, PSLG):
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    def __hash__(self) -> int:
+        return hash((self.rule, len(self.points), self.segments.tobytes()))
+
+    def _repr_svg_(self) -> str:
+        return svg_of(self.points, self.segments)
+
+
+def _same(one: object, other: object) -> bool:
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other)
+    return type(one) is type(other) and one == other
+
+
+def _pairs(segments: npt.ArrayLike) -> MarkerArray:
+    array = integers(segments, "segments")
+    if array.size == 0 and array.ndim <= 2:
+        return np.zeros((0, 2), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ShapeError(f"segments has shape {array.shape}; expected (s, 2)")
+    return array
+
+
+def _regions(regions: npt.ArrayLike | None) -> FloatArray:
+    array = unrounded_array(() if regions is None else regions, "regions")
+    if array.size == 0 and array.ndim <= 2:
+        return np.zeros((0, 4))
+    if array.ndim != 2 or array.shape[1] not in (3, 4):
+        raise ShapeError(f"regions has shape {array.shape}; expected (r, 4): x, y, attribute, area; or (r, 3)")
+    places, bounds = exact_doubles(array[:, :2], "regions"), exact_doubles(array[:, [2, -1]], "regions")
+    if array.shape[1] == 3:
+        bounds[:, 1] = _UNLIMITED
+    return np.hstack([places, bounds])
