@@ -7,6 +7,7 @@
 """
 
 from exactkernel.types import Sign, Stage
+from exactmesh.constrain import Crossings, constrained_delaunay
 from exactmesh.delaunay import delaunay
 from exactmesh.errors import (
     ChoiceError,
@@ -43,6 +44,7 @@ __all__ = [
     "CollinearPointsError",
     "CoordinateError",
     "CrossingError",
+    "Crossings",
     "DegenerateError",
     "Dual",
     "Edge",
@@ -74,6 +76,7 @@ __all__ = [
     "Vertex",
     "Violation",
     "Work",
+    "constrained_delaunay",
     "delaunay",
     "flip",
     "is_flippable",

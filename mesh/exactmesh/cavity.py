@@ -56,7 +56,7 @@ def apex(plane: Plane, chain: EdgeArray, i: int, j: int) -> int:
 
 @jit
 def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, free: int) -> tuple[int, int, int]:
-    """Make the triangle of the base p(i) p(j) and p(m); return (base of what is left beyond p(i) p(m), p(m) p(j), free).
+    """Make the triangle of the base p(i) p(j) and p(m); return (base of the rest at p(i) p(m), at p(m) p(j), free).
 
     The bases are -1 where nothing is left: there the triangle is at the chain.
     """

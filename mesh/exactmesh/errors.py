@@ -89,7 +89,8 @@ class FaultKind(StrEnum):
     REGION_NOT_FINITE = "region not finite"  # (region,)
     REGION_ON_SEGMENT = "region on a segment"  # (region, segment)
     REGION_OUTSIDE = "region outside"  # (region,)
-    NOT_CLOSED = "not closed"  # (segment,)
+    REGIONS_DISAGREE = "regions disagree"  # (first region, later one)
+    NOT_CLOSED = "not closed"  # (segment,), or () where there is none
     INCONSISTENT_PARITY = "inconsistent parity"  # (point,)
     RING_TOO_SHORT = "ring too short"  # (ring,)
     NOT_A_RING = "not a ring"  # (point,)
@@ -105,6 +106,7 @@ _REMEDIES = {
     FaultKind.REGION_NOT_FINITE: "give finite numbers; a negative area means unlimited",
     FaultKind.REGION_ON_SEGMENT: "move it into the face that it labels",
     FaultKind.REGION_OUTSIDE: "move it into the domain, or leave it out",
+    FaultKind.REGIONS_DISAGREE: "give them the same attribute and area, or a segment between them",
     FaultKind.NOT_CLOSED: "close the outline, or keep the hull with carve=False",
     FaultKind.INCONSISTENT_PARITY: "close the rings, or carve by seeds",
     FaultKind.RING_TOO_SHORT: "a ring needs three vertices at different positions",
@@ -135,7 +137,7 @@ class PSLGError(ExactMeshError):
         place = "" if path is None else f"{path}: "
         super().__init__(
             place + "; ".join(_summaries(faults)),
-            indices=[fault.indices[0] for fault in faults if fault.kind is faults[0].kind],
+            indices=[i for fault in faults if fault.kind is faults[0].kind for i in fault.indices[:1]],
         )
         self.faults = tuple(faults)
         self.path = path
