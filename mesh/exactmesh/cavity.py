@@ -42,7 +42,7 @@ def new_edge(org: EdgeArray, edge: int, start: int, end: int) -> int:
     return e
 
 
-@jit
+@jit_inline
 def apex(plane: Plane, chain: EdgeArray, i: int, j: int) -> int:
     """Return the vertex between p(i) and p(j) whose circle with these two is empty of the others."""
     a, b, c = corner(plane.org, chain, i), corner(plane.org, chain, j), corner(plane.org, chain, i + 1)
@@ -54,7 +54,7 @@ def apex(plane: Plane, chain: EdgeArray, i: int, j: int) -> int:
     return best
 
 
-@jit
+@jit_inline
 def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, free: int) -> tuple[int, int, int]:
     """Make the triangle of the base p(i) p(j) and p(m); return (base of the rest at p(i) p(m), at p(m) p(j), free).
 
@@ -77,7 +77,7 @@ def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, fre
     return near, far, free
 
 
-@jit
+@jit_inline
 def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free: int, patience: int) -> int:
     """Triangulate a polygon from its base on; return the next free edge, or -1 when patience is at its end."""
     stack = plane.stack
@@ -198,27 +198,26 @@ def fill_by_chance(plane: Plane, chain: EdgeArray, base: int, length: int, free:
 
 
 @jit
-def fill(plane: Plane, chain: EdgeArray, base: int, length: int, free: int) -> int:
-    """Triangulate a polygon; return the next free edge."""
-    patience = _PATIENCE * length if length > _SMALL else length * length
-    if fill_by_search(plane, chain, base, length, free, patience) < 0 and not fill_by_chance(
-        plane, chain, base, length, free
-    ):
+def fill_by_chance_or_else(plane: Plane, chain: EdgeArray, base: int, length: int, free: int) -> None:
+    """Triangulate a polygon for which searching takes too long."""
+    if not fill_by_chance(plane, chain, base, length, free):
         fill_by_search(plane, chain, base, length, free, length * length)
-    return free + length - 2
 
 
-@jit
+@jit_inline
 def split_along(plane: Plane, a: int, b: int, lefts: int, rights: int) -> int:
     """Replace the edges that the march from a to b crossed by ab and Delaunay edges beside it; return ab."""
     left, right, org = plane.left, plane.right, plane.org
     for i in range(rights // 2):  # now it leads back to b
         right[i], right[rights - 1 - i] = right[rights - 1 - i], right[i]
-    base = new_edge(org, plane.crossed[0], a, b)
-    free = fill(plane, left, base, lefts, 1)
-    fill(plane, right, base ^ 2, rights, free)
-    for i in range(lefts):
-        plane.spoke[origin(org, left[i])] = left[i]
-    for i in range(rights):
-        plane.spoke[origin(org, right[i])] = right[i]
+    base, free = new_edge(org, plane.crossed[0], a, b), 1
+    chain, length = left, lefts
+    for side in range(2):
+        patience = _PATIENCE * length if length > _SMALL else length * length
+        if fill_by_search(plane, chain, base ^ 2 * side, length, free, patience) < 0:
+            fill_by_chance_or_else(plane, chain, base ^ 2 * side, length, free)
+        free += length - 2
+        for i in range(length):
+            plane.spoke[origin(org, chain[i])] = chain[i]
+        chain, length = right, rights
     return base

@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from exactkernel.context import chunk_size
-from exactkernel.jit import jit
+from exactkernel.jit import jit, jit_inline
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.cavity import split_along
@@ -69,7 +69,7 @@ def plane_of(built: Insertion) -> Plane:
     )  # fmt: skip
 
 
-@jit
+@jit_inline
 def find_edge(plane: Plane, a: int, b: int) -> tuple[int, bool]:
     """Return (the edge from a to b, or -1; whether b has fewer edges), turning round both ends at once."""
     ring, org = plane.ring, plane.org
@@ -87,7 +87,7 @@ def find_edge(plane: Plane, a: int, b: int) -> tuple[int, bool]:
             return -1, True
 
 
-@jit
+@jit_inline
 def step(plane: Plane, a: int, b: int) -> tuple[int, int]:
     """Constrain the way from a toward b to the next vertex on it; return (edge, that vertex), or (-1, -1): crossed."""
     e, straight = toward(plane, a, b)

@@ -70,7 +70,7 @@ def is_ahead(xy: FloatArray, a: int, b: int, v: int) -> bool:
     return bool((xy[2 * v + 1] > xy[2 * a + 1]) == (xy[2 * b + 1] > xy[2 * a + 1]))
 
 
-@jit
+@jit_inline
 def toward(plane: Plane, a: int, b: int) -> tuple[int, bool]:
     """Return (e, True) if the edge e leaves a straight toward b; (e, False) if b lies between e and onext(e)."""
     ring, org = plane.ring, plane.org
@@ -88,7 +88,7 @@ def toward(plane: Plane, a: int, b: int) -> tuple[int, bool]:
         e, v, side = f, w, next_side
 
 
-@jit
+@jit_inline
 def march(plane: Plane, e: int, b: int) -> tuple[int, int, int, int]:
     """Walk from the origin a of e, across the triangle on its left, toward b, to the first vertex on the way.
 
