@@ -18,7 +18,8 @@ _PATIENCE = 48  # so many looks at each vertex, on the average, before chance ta
 _SMALL = 32  # polygons too small for that
 
 
-# A polygon lies on the left of its base, an edge from p0 to the last of p0, p1, .. pn, and of its chain:
+# New edges take their numbers from plane.crossed, from the last one, ``free``, downwards. A polygon lies on the left of
+# its base, an edge from p0 to the last of p0, p1, .. pn, and of its chain:
 #
 #         p2 ------ p3
 #         /           \          chain[i] leads from p(i+1) to p(i)
@@ -65,11 +66,11 @@ def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, fre
     f, g = chain[j - 1], chain[i]
     if m > i + 1:
         near = new_edge(org, plane.crossed[free], corner(org, chain, i), corner(org, chain, m))
-        free += 1
+        free -= 1
         g = near ^ 2
     if m < j - 1:
         far = new_edge(org, plane.crossed[free], corner(org, chain, m), corner(org, chain, j))
-        free += 1
+        free -= 1
         f = far ^ 2
     link_ring(plane.ring, base, f)
     link_ring(plane.ring, f, g)
@@ -78,8 +79,8 @@ def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, fre
 
 
 @jit_inline
-def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free: int, patience: int) -> int:
-    """Triangulate a polygon from its base on; return the next free edge, or -1 when patience is at its end."""
+def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free: int, patience: int) -> bool:
+    """Triangulate a polygon from its base on; tell whether it worked before patience was at its end."""
     stack = plane.stack
     stack[0], stack[1], stack[2] = 0, length, base
     height = 3
@@ -88,7 +89,7 @@ def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free:
         i, j, e = stack[height], stack[height + 1], stack[height + 2]
         patience -= j - i
         if patience < 0:
-            return -1
+            return False
         m = apex(plane, chain, i, j)
         near, far, free = halve(plane, chain, i, j, m, e, free)
         if far >= 0:
@@ -97,7 +98,7 @@ def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free:
         if near >= 0:
             stack[height], stack[height + 1], stack[height + 2] = i, m, near
             height += 3
-    return free
+    return True
 
 
 @jit_inline
@@ -191,7 +192,7 @@ def fill_by_chance(plane: Plane, chain: EdgeArray, base: int, length: int, free:
             plane.loose[e >> 2] = True
             legalize_fan(plane, e, corner(plane.org, chain, m))
     worked = True
-    for i in range(first, free):
+    for i in range(free + 1, first + 1):
         plane.loose[plane.crossed[i]] = False
         worked = worked and is_delaunay(plane, 4 * plane.crossed[i])
     return worked
@@ -205,18 +206,20 @@ def fill_by_chance_or_else(plane: Plane, chain: EdgeArray, base: int, length: in
 
 
 @jit_inline
-def split_along(plane: Plane, a: int, b: int, lefts: int, rights: int) -> int:
+def split_along(plane: Plane, a: int, b: int, crossed: int, lefts: int, rights: int) -> int:
     """Replace the edges that the march from a to b crossed by ab and Delaunay edges beside it; return ab."""
     left, right, org = plane.left, plane.right, plane.org
     for i in range(rights // 2):  # now it leads back to b
         right[i], right[rights - 1 - i] = right[rights - 1 - i], right[i]
-    base, free = new_edge(org, plane.crossed[0], a, b), 1
+    free = crossed - 1
+    base = new_edge(org, plane.crossed[free], a, b)
+    free -= 1
     chain, length = left, lefts
     for side in range(2):
         patience = _PATIENCE * length if length > _SMALL else length * length
-        if fill_by_search(plane, chain, base ^ 2 * side, length, free, patience) < 0:
+        if not fill_by_search(plane, chain, base ^ 2 * side, length, free, patience):
             fill_by_chance_or_else(plane, chain, base ^ 2 * side, length, free)
-        free += length - 2
+        free -= length - 2
         for i in range(length):
             plane.spoke[origin(org, chain[i])] = chain[i]
         chain, length = right, rights

@@ -167,7 +167,7 @@ def loops_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> tu
     order = np.lexsort((points[on_loops, 1], points[on_loops, 0]))
     rank[on_loops[order]] = np.arange(len(open_))
     parts = [loops[starts[i] : starts[i + 1]] for i in range(count)]
-    turned = [np.roll(part, -int(rank[part].argmin())) for part in parts]
+    turned = [np.concatenate(np.split(part, [rank[part].argmin()])[::-1]) for part in parts]
     return tuple(sorted(turned, key=lambda loop: (int(rank[loop[0]]), int(rank[loop[1]]))))
 
 

@@ -64,7 +64,7 @@ def plane_of(built: Insertion) -> Plane:
         fixed=np.zeros(built.edges, dtype=np.bool_), loose=np.zeros(built.edges, dtype=np.bool_),
         crossed=np.empty(built.edges, dtype=np.int32),
         left=np.empty(2 * built.edges, dtype=np.int32), right=np.empty(2 * built.edges, dtype=np.int32),
-        stack=np.empty(6 * built.edges, dtype=np.int32),
+        stack=np.empty(6 * built.edges, dtype=np.int64),
         ghost=n,
     )  # fmt: skip
 
@@ -93,16 +93,16 @@ def step(plane: Plane, a: int, b: int) -> tuple[int, int]:
     e, straight = toward(plane, a, b)
     w = dest(plane.org, e)
     if not straight:
-        w, _, lefts, rights = march(plane, e, b)
+        w, crossed, lefts, rights = march(plane, e, b)
         if w < 0:
             return -1, -1
-        e = split_along(plane, a, w, lefts, rights)
+        e = split_along(plane, a, w, crossed, lefts, rights)
     return e, w
 
 
 @jit
 def constrain_range(
-    plane: Plane, ends: IntArray, order: IndexArray, first: int, stop: int, pieces: EdgeArray, count: int
+    plane: Plane, ends: IndexArray, order: IndexArray, first: int, stop: int, pieces: EdgeArray, count: int
 ) -> tuple[int, int, bool]:
     """Insert the segments order[first .. stop - 1]; return (the next one, number of pieces, whether it is crossed).
 
@@ -137,13 +137,13 @@ def insert_segments(plane: Plane, ends: IntArray, progress: Progress | None = No
     They come in the order in which their later ends were inserted: at random from far, along a curve from near.
     """
     order = np.argsort(ends.max(axis=1, initial=0), kind="stable")
-    ends = ends.copy()
+    left = ends.astype(np.int64)
     pieces = np.empty((len(ends) + 16, 2), dtype=np.int32)
     turn = count = 0
     step_size = chunk_size(plane.k, _CHUNK)
     while turn < len(ends):
         stop = min(turn + step_size, len(ends))
-        turn, count, crossed = constrain_range(plane, ends, order, turn, stop, pieces, count)
+        turn, count, crossed = constrain_range(plane, left, order, turn, stop, pieces, count)
         raise_if_interrupted()
         if crossed:
             return None

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from exactkernel.context import Context
 from exactkernel.incircle import incircle_perturbed_adaptive
-from exactkernel.jit import jit, jit_inline
+from exactkernel.jit import jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin
@@ -42,7 +42,7 @@ class Plane(NamedTuple):
     crossed: EdgeArray
     left: EdgeArray
     right: EdgeArray
-    stack: EdgeArray
+    stack: npt.NDArray[np.int64]
     ghost: int
 
 
