@@ -30,6 +30,7 @@ __all__ = [
     "SeedError",
     "ShapeError",
     "TooFewPointsError",
+    "TooManyCrossingsError",
     "TooManyPointsError",
     "TopologyError",
 ]
@@ -41,6 +42,10 @@ class ChoiceError(ExactMeshError):
 
 class TooFewPointsError(ExactMeshError):
     """Fewer than three points span no triangle."""
+
+
+class TooManyCrossingsError(ExactMeshError):
+    """So many segments meet that the answer would not fit into memory."""
 
 
 class TooManyPointsError(ExactMeshError):
