@@ -15,6 +15,8 @@ from exactkernel.jit import jit, jit_inline
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.cavity import split_along
+from exactmesh.columns import MarkerArray
+from exactmesh.crossings import Arrangement, Meeting, arrange, find_crossings
 from exactmesh.delaunay import Insertion, Progress, insert_points, number_vertices
 from exactmesh.edgealgebra import EdgeArray, dest
 from exactmesh.errors import ChoiceError, CrossingError
@@ -43,6 +45,22 @@ class Crossings(StrEnum):
     @classmethod
     def _missing_(cls, value: object) -> Self:
         raise ChoiceError(f"crossings={value!r}; choose from {', '.join(cls)}")
+
+
+class Task(NamedTuple):
+    """What to triangulate.
+
+    Attributes:
+        graph: a graph whose segments do not cross.
+        source: the graph that was given; the same, unless it had crossings.
+        arrangement: how the one came from the other, or None.
+        rule: which faces to keep; None keeps all.
+    """
+
+    graph: PSLG
+    source: PSLG
+    arrangement: Arrangement | None
+    rule: Carve | None
 
 
 @jit
@@ -196,6 +214,19 @@ def precedes(p: FloatArray, q: FloatArray) -> BoolArray:
     return before
 
 
+def of_source(edges: Constrained, incidence: MarkerArray) -> Constrained:
+    """Return the same edges as parts of the segments that the graph was noded from; O(q log q).
+
+    ``incidence`` has sorted rows (segment of the noded graph, segment it is part of).
+    """
+    first, last = (np.searchsorted(incidence[:, 0], edges.segment, side) for side in ("left", "right"))
+    many = last - first
+    row = np.repeat(edges.row, many)
+    segment = incidence[np.repeat(last - np.cumsum(many), many) + np.arange(many.sum()), 1].astype(np.int32)
+    order = np.argsort(segment, kind="stable")
+    return edges._replace(row=row[order], segment=segment[order])
+
+
 class Cut(NamedTuple):
     """The domain, cut out of the triangulation of the hull.
 
@@ -211,12 +242,13 @@ class Cut(NamedTuple):
     sides: IntArray
 
 
-def cut_out(pslg: PSLG, rule: Carve | None, built: Insertion, edges: Constrained) -> Cut:
+def cut_out(task: Task, built: Insertion, edges: Constrained) -> Cut:
     """Extract the triangles, and keep those of the domain.
 
     Raises:
         PSLGError: the segments leave the domain open, or a seed lies outside of it.
     """
+    graph, rule = task.graph, task.rule
     slot = np.full(2 * built.edges, -1, dtype=np.int32)
     positions = np.arange(len(built.order), dtype=np.int32)
     triangles, neighbors = triangles_of(built.ring, built.org, slot, positions)
@@ -224,20 +256,17 @@ def cut_out(pslg: PSLG, rule: Carve | None, built: Insertion, edges: Constrained
     fixed, odd = np.zeros_like(triangles, dtype=np.bool_), np.zeros_like(triangles, dtype=np.bool_)
     _mark(fixed, sides)
     _mark(odd, sides[np.bincount(edges.row, minlength=len(sides)) % 2 == 1])
-    seeds = np.concatenate([pslg.holes, pslg.regions[:, :2]])
-    found = np.full(len(seeds), -1, dtype=np.int32)
-    if len(seeds):
-        points = pslg.points[built.order]
-        found = locate_points(points, triangles, neighbors, seeds)
+    seeds = np.concatenate([graph.holes, graph.regions[:, :2]])
+    found = locate_points(graph.points[built.order], triangles, neighbors, seeds) if len(seeds) else positions[:0]
     if rule is None:
         place = np.zeros(len(triangles), dtype=np.int32)
     else:
-        place = places_of(pslg, rule, neighbors, fixed, odd, found)
+        place = places_of(graph, rule, neighbors, fixed, odd, found)
     around = np.where(sides >= 0, place[sides >> 2], Place.EXTERIOR)
     if rule is Carve.SEEDS:
         lost = (around == Place.EXTERIOR).all(axis=1)
-        check_closed(pslg, np.unique(edges.segment[lost[edges.row]]))
-    region = regions_of(pslg, neighbors, fixed, place, found[len(pslg.holes) :])
+        check_closed(task.source, np.unique(edges.segment[lost[edges.row]]))
+    region = regions_of(graph, neighbors, fixed, place, found[len(graph.holes) :])
     kept = place == Place.DOMAIN
     if not kept.all():
         number = np.full(len(kept) + 1, -1, dtype=np.int32)
@@ -251,8 +280,9 @@ def _mark(flags: BoolArray, sides: IntArray) -> None:
     flags.reshape(-1)[3 * (real >> 2) + (real & 3)] = True
 
 
-def assembled(pslg: PSLG, built: Insertion, edges: Constrained, cut: Cut) -> Triangulation:
+def assembled(task: Task, built: Insertion, edges: Constrained, cut: Cut) -> Triangulation:
     """Number the vertices as their points come in the input, and hand everything over."""
+    graph, source = task.graph, task.source
     kept, vertex, representative = number_vertices(built.order, built.twin)
     used = np.zeros(len(kept), dtype=np.bool_)
     used[vertex[cut.triangles]] = True
@@ -265,36 +295,40 @@ def assembled(pslg: PSLG, built: Insertion, edges: Constrained, cut: Cut) -> Tri
     incidence = np.stack([(np.cumsum(inside) - 1)[edges.row[stays]], edges.segment[stays]], axis=1).astype(np.int32)
     triangles, segments = vertex[cut.triangles], vertex[edges.ends[inside]]
     boundary = boundary_edges(triangles, cut.neighbors)
-    attribute = pslg.regions[cut.region, 2:3] if len(pslg.regions) else np.zeros((len(triangles), 0))
-    attributes = pslg.point_attributes
+    attribute = graph.regions[cut.region, 2:3] if len(graph.regions) else np.zeros((len(triangles), 0))
+    attributes = graph.point_attributes
     return Triangulation(
-        points=pslg.points.take(kept, axis=0),
+        points=graph.points.take(kept, axis=0),
         triangles=triangles,
         neighbors=cut.neighbors,
-        representative=representative,
+        representative=representative[: len(source.points)],
         work=work_of(built.k, built.flips),
-        pslg=pslg,
+        pslg=source,
+        arrangement=task.arrangement,
         segments=segments,
-        segment_markers=markers_along(pslg, incidence, cut.sides[inside] == 1),
+        segment_markers=markers_along(source, incidence, cut.sides[inside] == 1),
         segment_incidence=incidence[np.lexsort(incidence.T[::-1])],
-        vertex_markers=vertex_markers(pslg, representative, segments, incidence, boundary, len(kept)),
+        vertex_markers=vertex_markers(graph, representative, segments, boundary, source, incidence),
         vertex_attributes=np.zeros((len(kept), 0)) if attributes is None else attributes.take(kept, axis=0),
         triangle_attributes=np.where(cut.region[:, None] >= 0, attribute, 0.0),
         triangle_regions=cut.region,
     )
 
 
-def triangulated(pslg: PSLG, rule: Carve | None, seed: int, progress: Progress | None) -> Triangulation | None:
+def triangulated(task: Task, seed: int, progress: Progress | None) -> Triangulation | None:
     """Return the constrained Delaunay triangulation, or None if segments cross."""
-    built = insert_points(pslg.points, seed=seed, progress=progress)
+    graph = task.graph
+    built = insert_points(graph.points, seed=seed, progress=progress)
     position = np.empty(len(built.order), dtype=np.int32)
     position[built.order] = built.twin
-    plane, ends = plane_of(built), position[pslg.segments]
+    plane, ends = plane_of(built), position[graph.segments]
     pieces = insert_segments(plane, ends)
     if pieces is None:
         return None
     edges = in_order(plane, ends, pieces)
-    return assembled(pslg, built, edges, cut_out(pslg, rule, built, edges))
+    if task.arrangement is not None:
+        edges = of_source(edges, task.arrangement.incidence)
+    return assembled(task, built, edges, cut_out(task, built, edges))
 
 
 def constrained_delaunay(
@@ -344,9 +378,12 @@ def constrained_delaunay(
     treatment = Crossings(crossings)
     if rule is Carve.EVEN_ODD:
         check_parity(pslg)
-    mesh = triangulated(pslg, rule, seed, progress)
-    if mesh is not None:
-        return mesh
-    if treatment is Crossings.ERROR:
-        raise CrossingError([])
-    raise NotImplementedError
+    mesh = triangulated(Task(pslg, pslg, None, rule), seed, progress)
+    if mesh is None:
+        if treatment is Crossings.ERROR:
+            found = find_crossings(pslg.points, pslg.segments)
+            raise CrossingError(found.pairs[found.kinds == Meeting.CROSSING])
+        arrangement = arrange(pslg)
+        mesh = triangulated(Task(arrangement.pslg, pslg, arrangement, rule), seed, progress)
+        assert mesh is not None  # an arrangement is planar
+    return mesh

@@ -38,15 +38,20 @@ def markers_along(pslg: PSLG, incidence: IntArray, on_boundary: BoolArray) -> Ma
 
 
 def vertex_markers(
-    pslg: PSLG, representative: IntArray, segments: IntArray, incidence: IntArray, boundary: IntArray, vertices: int
+    graph: PSLG, representative: IntArray, segments: IntArray, boundary: IntArray, source: PSLG, incidence: IntArray
 ) -> MarkerArray:
-    """Return the marker of each vertex; ``segments`` are the constrained edges, ``boundary`` its vertices."""
+    """Return the marker of each vertex of the graph.
+
+    ``segments`` are the constrained edges, ``boundary`` those of the boundary, and ``incidence`` has rows (constrained
+    edge, segment of the source), segments in order.
+    """
+    vertices = int(representative.max()) + 1
     found = np.zeros(vertices, dtype=np.int64)
-    if pslg.point_markers is not None:
+    if graph.point_markers is not None:
         stays = representative >= 0
-        found = _first_nonzero(representative[stays], pslg.point_markers[stays], vertices)
-    if pslg.segment_markers is not None:
-        markers = np.repeat(pslg.segment_markers[incidence[:, 1]], 2)
+        found = _first_nonzero(representative[stays], graph.point_markers[stays], vertices)
+    if source.segment_markers is not None:
+        markers = np.repeat(source.segment_markers[incidence[:, 1]], 2)
         touched = _first_nonzero(segments[incidence[:, 0]].reshape(-1), markers, vertices)
         found = np.where(found == 0, touched, found)
     outer = np.zeros(vertices, dtype=np.bool_)

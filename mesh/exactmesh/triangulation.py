@@ -12,6 +12,7 @@ from exactkernel.arrays import finite_points
 from exactkernel.batch import orient2d_batch
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW, Context
 from exactkernel.types import FloatArray, IntArray, Stage
+from exactmesh.arrangement import Arrangement
 from exactmesh.columns import MarkerArray
 from exactmesh.connectivity import edges_of, loops_of
 from exactmesh.errors import ShapeError, TopologyError
@@ -75,6 +76,7 @@ class Triangulation:
             point that lies outside of the domain.
         work: what it took to build it.
         pslg: the graph that was triangulated, or None.
+        arrangement: how its crossings became vertices, or None where there was no need.
         segments: int32 (s, 2), the constrained edges; without vertices inside of them, row i is segment i of the graph.
         segment_markers: int64 (s,), see :mod:`exactmesh.markers`.
         segment_incidence: int32 (k, 2), sorted rows (constrained edge, segment of the graph): a segment with vertices
@@ -100,6 +102,7 @@ class Triangulation:
     representative: IntArray
     work: Work
     pslg: PSLG | None = None
+    arrangement: Arrangement | None = None
     segments: IntArray = field(default_factory=_no_pairs)
     segment_markers: MarkerArray = field(default_factory=_no_markers)
     segment_incidence: IntArray = field(default_factory=_no_pairs)
