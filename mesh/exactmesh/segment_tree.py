@@ -26,6 +26,7 @@ LEAF = 12
 _SAMPLE = 24  # pieces that a cut is chosen from
 _GAIN = 0.85  # a cut should leave at most this part of the pairs
 _MISSES = 1  # so many cuts in a row may fail to
+_WORST = 2.0  # all cuts above a cell may leave this multiple of the pairs: never worse than twice all pairs
 _DEPTH = 4096  # of the stack of cells; below, a cell is a leaf
 
 #: The value of a linear function at a point, computed, is off by at most 3 u (|a x| + |b y|), and interpolated between two
@@ -43,7 +44,8 @@ class Pool(NamedTuple):
         segment: int32 (p,): of each piece.
         low, high: float64 (p,): its interval of parameters, 0 at a, 1 at b.
         start: int64: where each cell's run begins; cell c is start[c] .. start[c + 1] - 1.
-        misses: int64: how many cuts in a row have not paid.
+        misses: int64: how many of the cuts above each cell in a row have not paid.
+        remaining: float64: the product of the parts of the pairs that the cuts above each cell left.
         state: int64 (3,): number of cells; in the topmost cell: the next row of its pairs, or -1 where it was not
             looked at; and the length of its part with a common end.
         sample: float64 (_SAMPLE,): scratch.
@@ -56,6 +58,7 @@ class Pool(NamedTuple):
     high: FloatArray
     start: npt.NDArray[np.int64]
     misses: npt.NDArray[np.int64]
+    remaining: FloatArray
     state: npt.NDArray[np.int64]
     sample: FloatArray
     box: FloatArray
@@ -79,6 +82,7 @@ def pool_of(points: FloatArray, segments: IntArray) -> Pool:
         high=np.ones(size),
         start=start,
         misses=np.zeros(_DEPTH + 1, dtype=np.int64),
+        remaining=np.ones(_DEPTH + 1),
         state=np.array([1 if m else 0, -1, 0], dtype=np.int64),
         sample=np.empty(_SAMPLE),
         box=np.empty((m, 4)),
@@ -212,15 +216,18 @@ def split_top(pool: Pool) -> bool:
     """Cut the topmost cell into two if that promises fewer pairs; tell whether it did. Needs room for its pieces twice."""
     cell = pool.state[0] - 1
     begin, stop = pool.start[cell], pool.start[cell + 1]
-    if stop - begin <= LEAF or cell + 2 >= _DEPTH:
+    misses, remaining = pool.misses[cell], pool.remaining[cell]
+    if stop - begin <= LEAF or cell + 2 >= _DEPTH or misses > _MISSES:
         return False
     a, b, c, cost = _best_cut(pool, begin, stop)
-    misses = 0 if cost <= _GAIN else pool.misses[cell] + 1
-    if misses > _MISSES:
+    if (cost > _GAIN and misses == _MISSES) or remaining * cost > _WORST:
         return False
     middle, end = _cut(pool, begin, stop, a, b, c)
+    above, below, whole = middle - begin, end - middle, stop - begin
+    part = (float(above) * above + float(below) * below) / (float(whole) * whole)  # what rounding kept counts as well
     pool.start[cell + 1], pool.start[cell + 2] = middle, end
-    pool.misses[cell] = pool.misses[cell + 1] = misses
+    pool.misses[cell] = pool.misses[cell + 1] = 0 if part <= _GAIN else misses + 1
+    pool.remaining[cell] = pool.remaining[cell + 1] = remaining * part
     pool.state[0] += 1
     return True
 
