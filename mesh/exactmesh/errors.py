@@ -24,6 +24,7 @@ __all__ = [
     "Fault",
     "FaultKind",
     "FileFormatError",
+    "GeometryError",
     "InadmissibleError",
     "NonFiniteError",
     "PSLGError",
@@ -80,6 +81,10 @@ class FileFormatError(ExactMeshError):
         super().__init__(f"{place}: {message}")
         self.path = path
         self.line = line
+
+
+class GeometryError(ExactMeshError):
+    """Geometry from elsewhere that is none of the plane, or that its format cannot hold."""
 
 
 class FaultKind(StrEnum):
