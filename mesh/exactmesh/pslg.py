@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.arrays import exact_doubles, finite_points, unrounded_array
+from exactkernel.arrays import exact_doubles, finite_points
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.columns import MarkerArray, attributes_of, frozen, integers, markers_of, rows_for
+from exactmesh.columns import MarkerArray, attributes_of, frozen, integers, markers_of, regions_of, rows_for
 from exactmesh.errors import ChoiceError, GeometryError, PSLGError
 from exactmesh.faults import seed_faults, segment_faults
 from exactmesh.geojson import geojson_of, pieces_of_geojson
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 __all__ = ["PSLG", "Carve"]
-
-_UNLIMITED = -1.0  # area of a region that is given without one
 
 
 class Carve(StrEnum):
@@ -112,7 +110,10 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
     ) -> None:
         coordinates = finite_points(points)
         n, ends = len(coordinates), _pairs(segments)
-        seeds = {"hole": exact_doubles(() if holes is None else holes, "holes"), "region": _regions(regions)}
+        seeds = {
+            "hole": exact_doubles(() if holes is None else holes, "holes"),
+            "region": regions_of(regions, "regions"),
+        }
         content: dict[str, object] = {
             "points": coordinates,
             "holes": seeds["hole"],
@@ -280,15 +281,3 @@ def _pairs(segments: npt.ArrayLike) -> MarkerArray:
     if array.ndim != 2 or array.shape[1] != 2:
         raise ShapeError(f"segments has shape {array.shape}; expected (s, 2)")
     return array
-
-
-def _regions(regions: npt.ArrayLike | None) -> FloatArray:
-    array = unrounded_array(() if regions is None else regions, "regions")
-    if array.size == 0 and array.ndim <= 2:
-        return np.zeros((0, 4))
-    if array.ndim != 2 or array.shape[1] not in (3, 4):
-        raise ShapeError(f"regions has shape {array.shape}; expected (r, 4): x, y, attribute, area; or (r, 3)")
-    places, bounds = exact_doubles(array[:, :2], "regions"), exact_doubles(array[:, [2, -1]], "regions")
-    if array.shape[1] == 3:
-        bounds[:, 1] = _UNLIMITED
-    return np.hstack([places, bounds])
