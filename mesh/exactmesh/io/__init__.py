@@ -15,14 +15,25 @@ Triangle's files belong together by their stem: ``box.1.ele`` needs ``box.1.node
 Reference: [Shewchuk 1996]
 """
 
-from exactmesh.io.files import read, read_points, read_pslg, read_triangles, write, write_pslg
+from exactmesh.io.files import (
+    holds_segments,
+    read,
+    read_graph,
+    read_points,
+    read_pslg,
+    read_triangles,
+    write,
+    write_pslg,
+)
 from exactmesh.io.model import Mesh, Triangulated, mesh_of
 
 __all__ = [
     "Mesh",
     "Triangulated",
+    "holds_segments",
     "mesh_of",
     "read",
+    "read_graph",
     "read_points",
     "read_pslg",
     "read_triangles",

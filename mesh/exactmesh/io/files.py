@@ -18,7 +18,17 @@ from exactmesh.io.poly import has_points, mesh_of_pslg, poly_text, pslg_of, read
 from exactmesh.io.text import read_bytes
 from exactmesh.pslg import PSLG
 
-__all__ = ["PathLike", "read", "read_points", "read_pslg", "read_triangles", "write", "write_pslg"]
+__all__ = [
+    "PathLike",
+    "holds_segments",
+    "read",
+    "read_graph",
+    "read_points",
+    "read_pslg",
+    "read_triangles",
+    "write",
+    "write_pslg",
+]
 
 PathLike: TypeAlias = "str | os.PathLike[str]"
 
@@ -137,17 +147,29 @@ def read_pslg(path: PathLike) -> PSLG:
 
     Reference: [Shewchuk 1996]
     """
+    return read_graph(path)[0]
+
+
+def read_graph(path: PathLike) -> tuple[PSLG, int]:
+    """Read a PSLG as :func:`read_pslg` does, and return what the indices on file count from besides."""
     name = os.fspath(path)
     if os.path.splitext(name)[1] not in _GEOJSON:
-        return pslg_of(read(path), name)
+        mesh = read(path)
+        return pslg_of(mesh, name), mesh.base
     try:
-        return PSLG.from_geojson(read_bytes(name))
+        return PSLG.from_geojson(read_bytes(name)), 0
     except FileFormatError:
         raise
     except PSLGError as error:
         raise PSLGError(error.faults, path=name) from None
     except ExactMeshError as error:
         raise FileFormatError(str(error), path=name) from None
+
+
+def holds_segments(path: PathLike) -> bool:
+    """Tell whether a file is one of a PSLG, not just of points. FileFormatError if that cannot be told."""
+    suffix = os.path.splitext(os.fspath(path))[1]
+    return suffix in (".poly", *_GEOJSON) or (suffix == ".npz" and read(path).segments is not None)
 
 
 def write_pslg(path: PathLike, pslg: PSLG, *, base: int = 0) -> tuple[str, ...]:
@@ -213,7 +235,7 @@ def write(path: PathLike, mesh: Mesh | Triangulated) -> tuple[str, ...]:
     if suffix == ".npz":
         writers = {name: lambda stream: write_npz(content, stream)}
     elif suffix == ".csv":
-        if content.triangles is not None or content.edges is not None:
+        if any(array is not None for array in (content.triangles, content.edges, content.segments)):
             raise FileFormatError("a .csv file holds points only; write .node and .ele, or .npz", path=name)
         writers = {name: _texts(csv_text, content)}
     else:

@@ -1,6 +1,6 @@
 """What a mesh file holds, as arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -144,24 +144,23 @@ def _seeds(
 def mesh_of(mesh: Mesh | Triangulated) -> Mesh:
     """Return a mesh as it is, a triangulation as the mesh of what it consists of.
 
-    Of one without segments, that is points, triangles, neighbours and edges; else markers and attributes as well.
+    That is points, triangles, neighbours and edges; of a PSLG also its segments, markers, attributes, and seeds.
     """
     if isinstance(mesh, Mesh):
         return mesh
-    has_segments = len(getattr(mesh, "segments", ())) > 0
+    from exactmesh.triangulation import Triangulation  # which compiled code stands behind, that most files do not need
 
-    def besides(name: str) -> npt.NDArray[np.generic] | None:
-        return getattr(mesh, name) if has_segments else None
-
-    return Mesh(
-        mesh.points,
-        triangles=mesh.triangles,
-        neighbors=mesh.neighbors,
-        edges=mesh.edges,
-        point_attributes=besides("vertex_attributes"),
-        point_markers=besides("vertex_markers"),
-        triangle_attributes=besides("triangle_attributes"),
-        edge_markers=besides("edge_markers"),
-        segments=besides("segments"),
-        segment_markers=besides("segment_markers"),
+    plain = Mesh(mesh.points, triangles=mesh.triangles, neighbors=mesh.neighbors, edges=mesh.edges)
+    if not isinstance(mesh, Triangulation) or mesh.pslg is None:
+        return plain
+    return replace(
+        plain,
+        point_attributes=mesh.vertex_attributes,
+        point_markers=mesh.vertex_markers,
+        triangle_attributes=mesh.triangle_attributes,
+        edge_markers=mesh.edge_markers,
+        segments=mesh.segments,
+        segment_markers=mesh.segment_markers,
+        holes=mesh.pslg.holes,
+        regions=mesh.pslg.regions,
     )
