@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Annotated, BinaryIO
+from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
 
 import typer
 
@@ -132,22 +132,20 @@ def verify(
 
     content, graph = _triangles_of(mesh), None if domain is None else _domain_of(domain, carve)
     assert content.triangles is not None
-    attributes = content.triangle_attributes
+    given: dict[str, Any] = {"segments": content.segments} if content.segments is not None else {}
+    if graph is not None:
+        given = {"domain": graph}
+        if len(graph.regions) and content.triangle_attributes is not None:
+            given["labels"] = content.triangle_attributes[:, -1]
     with working(f"verifying {mesh}", compiling=not is_cache_warm()):
-        report = check(
-            content.points,
-            content.triangles,
-            segments=content.segments if graph is None else None,
-            domain=graph,
-            labels=attributes[:, -1] if graph is not None and len(graph.regions) and attributes is not None else None,
-            claims=claim or None,
-            orientation=orientation,
-        )
+        report = check(content.points, content.triangles, claims=claim or None, orientation=orientation, **given)
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))
     if content.base and json != "-" and report.violations:
         typer.echo(f"(Numbers in this report count from 0, those in the files from {content.base}.)")
+    if content.segments is not None and graph is None and json != "-" and not report.ok:
+        typer.echo("(Of a mesh with segments, --domain FILE says what it should cover; without, that is the hull.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from math import sqrt
+from math import ldexp, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -77,15 +77,23 @@ def triangulate_graph(source: str, target: str, seed: int, carve: Carve | bool, 
         try:
             mesh = constrained_delaunay(pslg, carve=carve, crossings=crossings, seed=seed, progress=progress)
         except PSLGError as error:
-            raise PSLGError(error.faults, path=source) from None
+            raise PSLGError(error.faults, path=source, base=base) from None
         except CrossingError as error:
-            raise FileFormatError(f"{error}: --crossings split", path=source) from None
+            raise FileFormatError(_crossing(error, base), path=source) from None
         except ExactMeshError as error:
             raise FileFormatError(str(error), path=source) from error
     paths = _write(target, replace(mesh_of(mesh), base=base))
     duplicates = pslg.duplicates
     yield from _duplicates(len(pslg.points), duplicates, pslg.representative[duplicates[:_NAMED]], base)
     yield f"{', '.join(_facts(pslg, mesh))}: {' '.join(paths)}"
+
+
+def _crossing(error: CrossingError, base: int) -> str:
+    """The error as one who looks into the file and types commands wants to read it."""
+    pairs = (error.pairs + base).tolist()
+    named = ", ".join(f"{i} and {j}" for i, j in pairs[:_NAMED])
+    more = f" and {len(pairs) - _NAMED} more pairs" if len(pairs) > _NAMED else ""
+    return f"segments cross: {named}{more}; --crossings split makes their crossings vertices"
 
 
 def _facts(pslg: PSLG, mesh: Triangulation) -> Iterator[str]:
@@ -95,10 +103,16 @@ def _facts(pslg: PSLG, mesh: Triangulation) -> Iterator[str]:
     outside = int(np.count_nonzero(mesh.representative[: len(pslg.points)] < 0))
     if outside:
         yield f"{outside} points outside of the domain left out"
-    arrangement = getattr(mesh, "arrangement", None)
-    if arrangement is not None and arrangement.crossings:
-        farthest = max(map(Fraction, arrangement.distance_squared), default=Fraction(0))
-        yield f"{arrangement.crossings} crossings split, at most {sqrt(farthest):.3g} off"
+    if mesh.arrangement is not None:
+        farthest = max(mesh.arrangement.distance_squared)
+        moved = _root(Fraction(int(farthest.numerator), int(farthest.denominator)))
+        yield f"{mesh.arrangement.crossings} crossings split, segments moved by at most {moved:.3g}"
+
+
+def _root(square: Fraction) -> float:
+    """Return the square root; of a square that is too small or too large for a double as well."""
+    shift = (square.numerator.bit_length() - square.denominator.bit_length()) // 2
+    return ldexp(sqrt(square / Fraction(4) ** shift), shift)
 
 
 def _write(target: str, mesh: Mesh) -> tuple[str, ...]:

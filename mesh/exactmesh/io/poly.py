@@ -126,7 +126,7 @@ def pslg_of(mesh: Mesh, path: str) -> PSLG:
             point_attributes=mesh.point_attributes,
         )
     except PSLGError as error:
-        raise PSLGError(error.faults, path=path) from None
+        raise PSLGError(error.faults, path=path, base=mesh.base) from None
 
 
 def mesh_of_pslg(pslg: PSLG, base: int) -> Mesh:
