@@ -253,9 +253,8 @@ class TestVerifyDomains:
         assert "nix.poly: no such file" in complaint(capsys, "verify", "lake.1.ele", "--domain", "nix.poly")
         assert "'odd'" in complaint(capsys, "verify", "lake.1.ele", "--domain", "lake.poly", "--carve", "odd")
         assert "--carve" in complaint(capsys, "verify", "lake.1.ele", "--carve", "seeds")
-        assert "bad.poly:1:" in (
-            Path("bad.poly").write_text("x 1") and complaint(capsys, "verify", "lake.1.ele", "--domain", "bad.poly")
-        )
+        Path("bad.poly").write_text("x 1")
+        assert "bad.poly:1:" in complaint(capsys, "verify", "lake.1.ele", "--domain", "bad.poly")
 
 
 class TestVerify:
