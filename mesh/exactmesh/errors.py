@@ -24,6 +24,7 @@ __all__ = [
     "Fault",
     "FaultKind",
     "FileFormatError",
+    "GeometryError",
     "InadmissibleError",
     "NonFiniteError",
     "PSLGError",
@@ -82,6 +83,10 @@ class FileFormatError(ExactMeshError):
         self.line = line
 
 
+class GeometryError(ExactMeshError):
+    """Geometry from elsewhere that is none of the plane, or that its format cannot hold."""
+
+
 class FaultKind(StrEnum):
     """What can be wrong with a planar straight line graph; the comments say what ``Fault.indices`` are."""
 
@@ -136,12 +141,14 @@ class PSLGError(ExactMeshError):
     """A planar straight line graph with faults: all of them in ``faults``, by kind; the message names the first ones.
 
     ``indices`` are the first index of each fault of the first kind; ``path`` is the file that it came from, or None.
+    All indices count from 0; where the file counts from ``base`` 1, the message says so.
     """
 
-    def __init__(self, faults: Sequence[Fault], *, path: str | None = None) -> None:
+    def __init__(self, faults: Sequence[Fault], *, path: str | None = None, base: int = 0) -> None:
         place = "" if path is None else f"{path}: "
+        note = f" [numbers here count from 0, those in the file from {base}]" if base else ""
         super().__init__(
-            place + "; ".join(_summaries(faults)),
+            place + "; ".join(_summaries(faults)) + note,
             indices=[i for fault in faults if fault.kind is faults[0].kind for i in fault.indices[:1]],
         )
         self.faults = tuple(faults)
