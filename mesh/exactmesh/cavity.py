@@ -8,7 +8,11 @@ vertices are inserted one by one in random order instead, each into the edge tha
 [Shewchuk 2015].
 """
 
+import math
+
+from exactkernel.expansions import two_diff
 from exactkernel.jit import jit, jit_inline
+from exactkernel.orient2d import products_difference
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin, swap
 from exactmesh.plane import Plane, conflict, orient
 
@@ -101,13 +105,26 @@ def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free:
     return True
 
 
-@jit_inline
-def heuristic_height(plane: Plane, chain: EdgeArray, length: int, i: int) -> float:
-    """Return about how far p(i) is from the base, in some unit."""
-    xy = plane.xy
-    a, b, v = corner(plane.org, chain, 0), corner(plane.org, chain, length), corner(plane.org, chain, i)
-    dx, dy = xy[2 * b] - xy[2 * a], xy[2 * b + 1] - xy[2 * a + 1]
-    return float(dx * (xy[2 * v + 1] - xy[2 * a + 1]) - dy * (xy[2 * v] - xy[2 * a]))
+@jit
+def is_nearer(plane: Plane, chain: EdgeArray, length: int, i: int, j: int) -> bool:
+    """Tell whether p(i) is nearer to the base than p(j): exactly in the window of the coordinates, else about.
+
+    Rounded distances would do for most polygons; but vertices rounded onto one slanted line are told apart by nothing
+    except what was rounded off, and a wrong order costs a search through all of them.
+    """
+    xy, k = plane.xy, plane.k
+    a, b = corner(plane.org, chain, 0), corner(plane.org, chain, length)
+    u, v = corner(plane.org, chain, i), corner(plane.org, chain, j)
+    left = (xy[2 * b] - xy[2 * a]) * (xy[2 * u + 1] - xy[2 * v + 1])
+    right = (xy[2 * b + 1] - xy[2 * a + 1]) * (xy[2 * u] - xy[2 * v])
+    difference = left - right
+    if k.orient2d_bound == math.inf or abs(difference) > k.orient2d_bound * (abs(left) + abs(right)):
+        return bool(difference < 0.0)  # two differences, two products: the filter of orient2d
+    p, p_tail = two_diff(xy[2 * b], xy[2 * a])
+    q, q_tail = two_diff(xy[2 * u + 1], xy[2 * v + 1])
+    r, r_tail = two_diff(xy[2 * b + 1], xy[2 * a + 1])
+    s, s_tail = two_diff(xy[2 * u], xy[2 * v])
+    return (products_difference(p, p_tail, q, q_tail, r, r_tail, s, s_tail, k.scratch) & 3) == 0
 
 
 @jit
@@ -115,7 +132,7 @@ def heuristic_order(plane: Plane, chain: EdgeArray, length: int) -> None:
     """Write stack[3 k], the vertex to insert in turn k = 1 .. n - 1, and for each i the two that it comes between.
 
     From the last to the first they are taken out at random, but none that is then nearer to the base than both its
-    neighbors: so what is left has nearly always the shape that the insertion needs.
+    neighbors: so what is left has the shape that the insertion needs, wherever distances are compared exactly.
     """
     stack = plane.stack
     for i in range(length + 1):
@@ -127,10 +144,8 @@ def heuristic_order(plane: Plane, chain: EdgeArray, length: int) -> None:
             chosen = 1 + (state >> 8) % turn
             i = stack[3 * chosen]
             before, after = stack[3 * i + 1], stack[3 * i + 2]
-            height = heuristic_height(plane, chain, length, i)
             if turn == 1 or not (
-                height < heuristic_height(plane, chain, length, before)
-                and height < heuristic_height(plane, chain, length, after)
+                is_nearer(plane, chain, length, i, before) and is_nearer(plane, chain, length, i, after)
             ):
                 break
         stack[3 * chosen], stack[3 * turn] = stack[3 * turn], i
