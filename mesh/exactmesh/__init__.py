@@ -7,11 +7,13 @@
 """
 
 from exactkernel.types import Sign, Stage
+from exactmesh.builder import TriangulationBuilder
 from exactmesh.constrain import Crossings, constrained_delaunay
 from exactmesh.delaunay import delaunay
 from exactmesh.errors import (
     ChoiceError,
     CollinearPointsError,
+    ConstrainedVertexError,
     CoordinateError,
     CrossingError,
     DegenerateError,
@@ -43,6 +45,7 @@ __all__ = [
     "Carve",
     "ChoiceError",
     "CollinearPointsError",
+    "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
     "Crossings",
@@ -73,6 +76,7 @@ __all__ = [
     "TooManyPointsError",
     "TopologyError",
     "Triangulation",
+    "TriangulationBuilder",
     "Verdict",
     "VerificationError",
     "Vertex",

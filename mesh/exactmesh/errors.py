@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ChoiceError",
     "CollinearPointsError",
+    "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
     "DegenerateError",
@@ -55,6 +56,10 @@ class TooManyPointsError(ExactMeshError):
 
 class CollinearPointsError(ExactMeshError):
     """All points lie on one line, or are one point: there is no triangle."""
+
+
+class ConstrainedVertexError(ExactMeshError):
+    """A vertex cannot be deleted, for segments end in it or pass through it: ``indices`` names them."""
 
 
 class SeedError(ExactMeshError):
