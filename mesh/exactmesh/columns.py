@@ -39,11 +39,18 @@ def frozen(array: A) -> A:
 
 
 def array_of(values: npt.ArrayLike, name: str) -> npt.NDArray[np.generic]:
-    """Return the values as an array of whatever type; ShapeError if they are ragged."""
+    """Return the values as an array of whatever type; ShapeError if they are ragged, or some are masked."""
+    _refuse_masked(values, name)
     try:
         return np.asarray(values)
     except ValueError as error:
         raise ShapeError(f"{name} is no array: {error}") from None
+
+
+def _refuse_masked(values: npt.ArrayLike | None, name: str) -> None:
+    """numpy drops a mask silently, and with it the fact that a value is missing."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
+        raise ShapeError(f"{name} has masked values")
 
 
 def integers(values: npt.ArrayLike, name: str) -> MarkerArray:
@@ -117,6 +124,7 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
 
 def regions_of(values: npt.ArrayLike | None, name: str) -> FloatArray:
     """Return rows x, y, attribute, area, (r, 4); rows of three get an area of -1: unlimited. NaN and infinity pass."""
+    _refuse_masked(values, name)
     array = unrounded_array(() if values is None else values, name)
     if array.size == 0 and array.ndim <= 2:
         return np.zeros((0, 4))
