@@ -1,7 +1,7 @@
 """ARR: which segments meet, and the planar graph that they become, against brute force in fractions."""
 
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -31,7 +31,9 @@ SEVEN = np.array(
 SNAPPED_BUNDLES = {26}
 
 
-def found(points: FloatArray | list[tuple[float, float]], segments: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
+def found(
+    points: FloatArray | list[tuple[float, float]], segments: list[tuple[int, int]]
+) -> list[tuple[int, int, int]]:
     pairs = find_crossings(points, segments)
     return [(i, j, kind) for (i, j), kind in zip(pairs.pairs.tolist(), pairs.kinds.tolist(), strict=True)]
 
@@ -66,7 +68,9 @@ class TestPairs:
         rim = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         wheel = np.concatenate([[[0.3, 0.3]], rim])
         assert found(wheel, [(0, i + 1) for i in range(100)]) == []
-        stack = np.concatenate([np.arange(100)[:, None] * [-0.001, 0.002], np.arange(100)[:, None] * [-0.001, 0.002] + [2, 1]])
+        stack = np.concatenate(
+            [np.arange(100)[:, None] * [-0.001, 0.002], np.arange(100)[:, None] * [-0.001, 0.002] + [2, 1]]
+        )
         assert found(stack, [(i, i + 100) for i in range(100)]) == []
         through = np.concatenate([0.3 - rim, 0.3 + rim])
         segments = [(i, i + 100) for i in range(100)]
@@ -135,7 +139,7 @@ def faults(a: Arrangement) -> list[str]:
         chain = a.pslg.representative[a.chain(i)].tolist()
         if [chain[0], chain[-1]] != a.pslg.representative[[p, q]].tolist() or len(set(chain)) != len(chain):
             wrong.append(f"chain {i} does not lead from end to end")
-        covered += [(frozenset(e), i) for e in zip(chain, chain[1:], strict=False)]
+        covered += [(frozenset(e), i) for e in pairwise(chain)]
         farthest = max(oracle.distance_squared(exact[v], (given[p], given[q])) for v in chain)
         if farthest != fraction(a.distance_squared[i]):
             wrong.append(f"distance of chain {i}")
@@ -148,7 +152,9 @@ def faults(a: Arrangement) -> list[str]:
     return wrong
 
 
-@pytest.mark.obligation("ARR3", "the rounded arrangement is planar, within its stated distance, and noding it changes nothing")
+@pytest.mark.obligation(
+    "ARR3", "the rounded arrangement is planar, within its stated distance, and noding it changes nothing"
+)
 class TestArrangement:
     """Whatever the segments: the result is planar by brute force; every chain leads along its segment, within half the
     diagonal of the grid's cells, at exactly the stated distance; the points of the input stay unless all are snapped;
@@ -169,11 +175,12 @@ class TestArrangement:
         points, segments = drawing
         exact = rationals(points)
         ends = [(exact[a], exact[b]) for a, b in segments]
-        crossings = {oracle.proper_crossing(s, t) for s, t in combinations(ends, 2)} - {None}
-        nearest = {(float(p[0]), float(p[1])) for p in crossings if p is not None}
+        crossings = {p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None}
+        nearest = {(float(p[0]), float(p[1])) for p in crossings}
+        is_exact = all((Fraction(float(x)), Fraction(float(y))) == (x, y) for x, y in crossings)
         arranged = arrange(PSLG(points, segments))
         if arranged.rounding is Rounding.EXACT:
-            assert nearest == {(x, y) for x, y in crossings if x is not None}
+            assert is_exact
         if arranged.rounding is Rounding.SNAPPED:
             return
         new = {(x, y) for x, y in arranged.pslg.points[len(points) :].tolist()}
@@ -207,10 +214,7 @@ class TestArrangement:
             chains.append(sorted((sign * p[axis], (float(p[0]), float(p[1]))) for p in [*s, *crossings]))
         vertices = sorted({p for chain in chains for _, p in chain})
         pieces = {
-            (vertices.index(p), vertices.index(q))
-            for chain in chains
-            for (_, p), (_, q) in zip(chain, chain[1:], strict=False)
-            if p != q
+            (vertices.index(p), vertices.index(q)) for chain in chains for (_, p), (_, q) in pairwise(chain) if p != q
         }
         assert not oracle.is_planar(vertices, sorted(pieces))
 
@@ -224,14 +228,18 @@ class TestArrangement:
         moved = good.pslg.points.copy()
         moved[4] = (2.0, 2.5)
         far = PSLG(moved, good.pslg.segments)
-        assert {"a point of the input moved", "chain 0 is too far"} <= set(faults(Arrangement(**{**fields, "pslg": far})))
+        assert {"a point of the input moved", "chain 0 is too far"} <= set(
+            faults(Arrangement(**{**fields, "pslg": far}))
+        )
         assert "incidence" in faults(Arrangement(**{**fields, "incidence": good.incidence[1:]}))
 
 
-@pytest.mark.obligation("ARR4", "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets")
+@pytest.mark.obligation(
+    "ARR4", "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets"
+)
 class TestSnapping:
-    """Of any drawing: the vertices are the centres of the pixels with a point or a crossing in them, and each chain leads
-    through exactly the hot pixels that its segment meets; the result is planar."""
+    """Of any drawing: the vertices are the centres of the pixels with a point or a crossing in them, and each chain
+    leads through exactly the hot pixels that its segment meets; the result is planar."""
 
     @staticmethod
     def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Graph:
@@ -249,7 +257,7 @@ class TestSnapping:
         ends = [(exact[a], exact[b]) for a, b in segments]
         crossings = [p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None]
         hot = {oracle.pixel(p, grid) for p in [*exact, *crossings]}
-        cells = [oracle.pixel(p, (Fraction(grid[0]), Fraction(grid[1]))) for p in rationals(graph.points.tolist())]
+        cells = [oracle.pixel(p, grid) for p in rationals(graph.points.tolist())]
         assert set(cells) == hot
         for i, s in enumerate(ends):
             chain = graph.chains.vertices[graph.chains.start[i] : graph.chains.start[i + 1]].tolist()

@@ -123,7 +123,8 @@ def crossing_in_pairs(
 ) -> tuple[float, float, float, float, float, float]:
     """Return (x, x tail, x error, y, y tail, y error) of the crossing of ab and cd, which must not be parallel.
 
-    The exact coordinate differs from x + tail by at most the error: 0 where it is exact, infinite where nothing is known.
+    The exact coordinate differs from x + tail by at most the error: 0 where it is exact, infinite where nothing is
+    known.
     """
     inf = math.inf
     if k.incircle_bound == inf and not (

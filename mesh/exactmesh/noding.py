@@ -26,7 +26,6 @@ LongArray = npt.NDArray[np.int64]
 
 _BYTES_PER_MEETING = 48  # of the incidences, after those of a portion were made distinct
 _ROUNDS = 8
-_PATIENCE = 3  # so many rounds may put in as many vertices as the one before
 
 
 class Graph(NamedTuple):
@@ -186,7 +185,7 @@ def node_by_rounding(points: FloatArray, segments: IntArray, representative: Int
     vertex = segments.reshape(-1).astype(np.int64)
     alone = alone_of(representative, segments)
     used = np.flatnonzero(representative == np.arange(len(representative)))
-    crossings = put_in = 0
+    crossings = 0
     for rounds in range(_ROUNDS + 1):
         chains = chains_in(points, used, begins, ends, segment, vertex)
         pieces = pieces_of(chains)
@@ -194,9 +193,6 @@ def node_by_rounding(points: FloatArray, segments: IntArray, representative: Int
         found = placed_meetings(points, items, CrossingRounder(points, items))
         if not len(found.segment) and not len(found.place):
             return Graph(points, representative, chains, pieces, crossings, rounds)
-        before, put_in = put_in, len(found.segment) + len(found.place)
-        if rounds >= _PATIENCE and put_in >= before:
-            return None
         crossings = crossings if rounds else len(found.places)
         points, vertex_of_place = with_places(points, used, found.places)
         used = np.concatenate([used, np.arange(max(len(representative), used[-1] + 1), len(points))])

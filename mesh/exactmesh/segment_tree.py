@@ -1,12 +1,12 @@
 """A hierarchical subdivision that hands each cell the pieces of segments in it: which pairs of segments may meet?
 
-A cell is cut by a line, and each piece of a segment goes to the side or the sides on which it lies, clipped to them. The
-line's direction is one of the axes or runs along the pieces, whichever of a sample promises the fewest pairs: a bundle of
-long slanted segments, which boxes cannot tell apart, falls apart like a stack. A cell that no cut makes cheaper is a leaf,
-and all pairs in it are tested: where many segments cross, that costs about as much as what is found.
+A cell is cut by a line, and each piece of a segment goes to the side or the sides on which it lies, clipped to them.
+The line's direction is one of the axes or runs along the pieces, whichever of a sample promises the fewest pairs: a
+bundle of long slanted segments, which boxes cannot tell apart, falls apart like a stack. A cell that no cut makes
+cheaper is a leaf, and all pairs in it are tested: where many segments cross, that costs about as much as what is found.
 
-Clipping is done in doubles and errs on the side of keeping: a piece is an interval of parameters that surely contains all
-points of the segment in the cell. So every meeting survives to some leaf, and exactness is left to the test there.
+Clipping is done in doubles and errs on the side of keeping: a piece is an interval of parameters that surely contains
+all points of the segment in the cell. So every meeting survives to some leaf, and exactness is left to the test there.
 """
 
 import math
@@ -30,9 +30,9 @@ _WORST = 2.0  # all cuts above a cell may leave this multiple of the pairs: neve
 _DEPTH = 4096  # of the stack of cells; below, a cell is a leaf
 
 #: The value of a (x - ox) + b (y - oy), computed, is off by at most 3 u times the sum of the absolute products, and
-#: interpolated between two ends by at most 4 u more; 16 u times the sum for both ends leaves half to spare. The origin is
-#: a point of the cell: so what a cut cannot tell apart is small beside the cell, and not beside the coordinates. Scaled
-#: coordinates that underflowed are off by 2^-1074 each.
+#: interpolated between two ends by at most 4 u more; 16 u times the sum for both ends leaves half to spare. The origin
+#: is a point of the cell: so what a cut cannot tell apart is small beside the cell, and not beside the coordinates.
+#: Scaled coordinates that underflowed are off by 2^-1074 each.
 _ERROR = 16.0 * UNIT_ROUNDOFF
 #: A point between two ends, computed, is off by at most 3 u times the sum of their magnitudes.
 _BOX_ERROR = 4.0 * UNIT_ROUNDOFF
@@ -147,12 +147,13 @@ def _middle(values: FloatArray, count: int) -> float:
             values[j] = values[j - 1]
             j -= 1
         values[j] = value
-    return 0.5 * (values[(count - 1) >> 1] + values[count >> 1])
+    return float(0.5 * (values[(count - 1) >> 1] + values[count >> 1]))
 
 
 @jit
 def _try_cut(pool: Pool, begin: int, step: int, count: int, a: float, b: float) -> tuple[float, float]:
-    """Return (c, cost): the cut a x + b y = c through the middle of a sample, and the part of its pairs that remains."""
+    """Return (c, cost): the cut a x + b y = c through the middle of a sample, and the part of its pairs that
+    remains."""
     middles = pool.sample
     for i in range(count):
         p = begin + i * step
@@ -229,7 +230,8 @@ def _cut(pool: Pool, begin: int, stop: int, a: float, b: float, c: float) -> tup
 
 @jit
 def split_top(pool: Pool) -> bool:
-    """Cut the topmost cell into two if that promises fewer pairs; tell whether it did. Needs room for its pieces twice."""
+    """Cut the topmost cell into two if that promises fewer pairs; tell whether it did. Needs room for its pieces
+    twice."""
     cell = pool.state[0] - 1
     begin, stop = pool.start[cell], pool.start[cell + 1]
     misses, remaining = pool.misses[cell], pool.remaining[cell]
