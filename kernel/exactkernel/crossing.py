@@ -16,8 +16,17 @@ from exactkernel.constants import (
 )
 from exactkernel.context import Context
 from exactkernel.doubledouble import dd_add, dd_multiply
-from exactkernel.expansions import fast_two_sum, two_diff, two_product
+from exactkernel.expansions import (
+    determinant_2x2,
+    expansion_product,
+    expansion_sum,
+    fast_two_sum,
+    negate,
+    pair,
+    two_diff,
+)
 from exactkernel.jit import jit
+from exactkernel.types import FloatArray
 
 __all__ = ["crossing_in_pairs", "dd_cross", "is_nearest_certain"]
 
@@ -76,11 +85,36 @@ def _coordinate(
 
 
 @jit
-def _on_grid(x: float, a: float, u: float, num: float, det: float) -> bool:
-    """Tell whether x = a + (num / det) u where num u and det are exact doubles."""
+def is_nearest_certain(x: float, tail: float, error: float) -> bool:
+    """Tell whether x is the double nearest to every number within the error of x + tail."""
+    if error == 0.0 and tail == 0.0:
+        return True
+    margin = error + 4.0 * UNIT_ROUNDOFF * (abs(tail) + error)
+    return bool(x + (tail + margin) == x and x + (tail - margin) == x)
+
+
+@jit
+def _is_exact(
+    x: float,
+    a: float,
+    u: float,
+    u_tail: float,
+    det: FloatArray,
+    n_det: int,
+    num: FloatArray,
+    n_num: int,
+    scratch: FloatArray,
+) -> bool:
+    """Tell whether x = a + (num / det) u exactly, by expansions; uses 354 doubles of scratch."""
+    if not _is_safe(x):
+        return False
+    f, scaled, total = scratch[0:2], scratch[2:34], scratch[34:98]
+    left, right, difference = scratch[98:162], scratch[162:226], scratch[226:354]
     step, step_tail = two_diff(x, a)
-    product, product_tail = two_product(step, det)
-    return step_tail == 0.0 and product_tail == 0.0 and product == num * u
+    n_left = expansion_product(det, n_det, f, pair(step, step_tail, f), left, scaled, total)
+    n_right = expansion_product(num, n_num, f, pair(u, u_tail, f), right, scaled, total)
+    negate(right, n_right)
+    return expansion_sum(left, n_left, right, n_right, difference) == 0
 
 
 @jit
@@ -89,7 +123,8 @@ def crossing_in_pairs(
 ) -> tuple[float, float, float, float, float, float]:
     """Return (x, x tail, x error, y, y tail, y error) of the crossing of ab and cd, which must not be parallel.
 
-    The exact coordinate differs from x + tail by at most the error: 0 where it is exact, infinite where nothing is known.
+    The exact coordinate differs from x + tail by at most the error: 0 where it is exact, infinite where nothing is
+    known.
     """
     inf = math.inf
     if k.incircle_bound == inf and not (
@@ -113,19 +148,12 @@ def crossing_in_pairs(
     y, y_tail, y_error = _coordinate(
         ay, uy, uy_tail, cy, vy, num, num_tail, num_error, det, det_tail, det_error
     )  # fmt: skip
-    largest = max(max(abs(ux), abs(uy)), max(max(abs(vx), abs(vy)), max(abs(wx), abs(wy))))
-    if largest <= k.grid_limit:  # the determinants are exact, and so are the products with a difference
-        if x_error < inf and _on_grid(x, ax, ux, num, det):
+    if not (is_nearest_certain(x, x_tail, x_error) and is_nearest_certain(y, y_tail, y_error)):
+        exact_det, exact_num, scratch = k.scratch[0:16], k.scratch[16:32], k.scratch[32:]
+        n_det = determinant_2x2(ux, ux_tail, vy, vy_tail, uy, uy_tail, vx, vx_tail, exact_det, scratch)
+        n_num = determinant_2x2(wx, wx_tail, vy, vy_tail, wy, wy_tail, vx, vx_tail, exact_num, scratch)
+        if _is_exact(x, ax, ux, ux_tail, exact_det, n_det, exact_num, n_num, scratch):
             x_tail = x_error = 0.0
-        if y_error < inf and _on_grid(y, ay, uy, num, det):
+        if _is_exact(y, ay, uy, uy_tail, exact_det, n_det, exact_num, n_num, scratch):
             y_tail = y_error = 0.0
     return x, x_tail, x_error, y, y_tail, y_error
-
-
-@jit
-def is_nearest_certain(x: float, tail: float, error: float) -> bool:
-    """Tell whether x is the double nearest to every number within the error of x + tail."""
-    if error == 0.0 and tail == 0.0:
-        return True
-    margin = error + 4.0 * UNIT_ROUNDOFF * (abs(tail) + error)
-    return bool(x + (tail + margin) == x and x + (tail - margin) == x)

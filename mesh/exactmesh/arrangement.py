@@ -24,8 +24,8 @@ class Rounding(StrEnum):
     EXACT = "exact"
     """Every vertex is a double as it is; nothing was moved."""
     NEAREST = "nearest"
-    """Crossings became the nearest doubles, and the pieces still meet in common ends only (perhaps after they were noded
-    once more). The points of the input stayed where they are."""
+    """Crossings became the nearest doubles, and the pieces still meet in common ends only (perhaps after they were
+    noded once more). The points of the input stayed where they are."""
     SNAPPED = "snapped"
     """Snap rounding: all vertices, the points of the input too, went to the nearest points of a grid."""
 

@@ -79,7 +79,8 @@ def _cell(value: mpq, spacing: float) -> float:
 
 def cells_of(points: FloatArray, grid: tuple[float, float]) -> FloatArray:
     """Return the grid cell of each point: (floor(x / gx + 1/2), floor(y / gy + 1/2)), exact. Spacings are powers of two
-    for which all magnitudes divided by them are at most 2^53; what underflows is next to nothing, and lies in cell 0."""
+    for which all magnitudes divided by them are at most 2^53; what underflows is next to nothing, and lies in cell
+    0."""
     scaled = points / np.array(grid)
     floor = np.floor(scaled)
     cells: FloatArray = floor + (scaled - floor >= 0.5) + 0.0
@@ -121,8 +122,18 @@ class CrossingRounder:
         for begin in range(0, len(first), _CHUNK):
             stop = min(begin + _CHUNK, len(first))
             n = _round_range(
-                self._context, self._xy, self._segments, first, second, self._scale, smallest, begin, stop, out, undecided
-            )  # fmt: skip
+                self._context,
+                self._xy,
+                self._segments,
+                first,
+                second,
+                self._scale,
+                smallest,
+                begin,
+                stop,
+                out,
+                undecided,
+            )
             raise_if_interrupted()
             left += undecided[:n].tolist()
         if self._grid is None and self._exponent:

@@ -1,7 +1,7 @@
 """Segments that meet where they should not: find all of them, or make a planar graph of them.
 
-:func:`find_crossings` lists the pairs; :func:`exactmesh.arrangement.arrange` turns a PSLG into one whose segments meet in
-common ends only.
+:func:`find_crossings` lists the pairs; :func:`exactmesh.arrangement.arrange` turns a PSLG into one whose segments meet
+in common ends only.
 """
 
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ import numpy.typing as npt
 from exactkernel.arrays import finite_points
 from exactkernel.errors import DegenerateError, ShapeError
 from exactmesh.arrangement import Arrangement, Rounding, arrange
+from exactmesh.chains import distinct
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.columns import MarkerArray, frozen, indices_of
-from exactmesh.chains import distinct
 from exactmesh.memory import limited
 from exactmesh.segment_meetings import Meeting, meetings
 
@@ -57,7 +57,7 @@ def find_crossings(points: npt.ArrayLike, segments: npt.ArrayLike) -> SegmentPai
         DegenerateError: a segment begins and ends in one place; ``indices`` names the segments.
         TooManyCrossingsError: the pairs do not fit into a quarter of the machine's memory.
 
-    O((s + k) log s) for real data and for bundles of any direction. Reference [Bentley 1975], [Chazelle 1994].
+    O((s + k) log s) for real data and for bundles of any direction. Reference [Fuchs 1980].
 
     >>> from exactmesh.crossings import find_crossings
     >>> found = find_crossings([(0, 0), (2, 2), (0, 2), (2, 0), (1, 1), (3, 1)], [(0, 1), (2, 3), (4, 5)])
@@ -75,9 +75,10 @@ def find_crossings(points: npt.ArrayLike, segments: npt.ArrayLike) -> SegmentPai
     flat = np.flatnonzero(ends[:, 0] == ends[:, 1])
     if flat.size:
         raise DegenerateError(f"segment {flat[0]} begins and ends in one place", indices=flat.tolist())
-    keys = [np.empty(0, np.int64)]
-    for portion in limited(meetings(coordinates, ends), _BYTES_PER_PAIR):
-        keys.append((portion.first.astype(np.int64) << 31 | portion.second) << 2 | portion.kind)
-    found = distinct(np.concatenate(keys))
+    keys = [
+        (portion.first.astype(np.int64) << 31 | portion.second) << 2 | portion.kind
+        for portion in limited(meetings(coordinates, ends), _BYTES_PER_PAIR)
+    ]
+    found = distinct(np.concatenate([np.empty(0, np.int64), *keys]))
     pairs = np.stack([found >> 33, found >> 2 & (2**31 - 1)], axis=1)
     return SegmentPairs(frozen(pairs), frozen((found & 3).astype(np.int8)))

@@ -1,7 +1,7 @@
 """Which segments meet which pixels: a tree of boxes over the pixels, and an exact test.
 
-Everything is in units of the grid: the pixel of cell (i, j) is the square [i - 1/2, i + 1/2) x [j - 1/2, j + 1/2), its left
-and lower sides included, so that every point lies in one pixel. Reference [Hobby 1999], [Guibas 1998].
+Everything is in units of the grid: the pixel of cell (i, j) is the square [i - 1/2, i + 1/2) x [j - 1/2, j + 1/2), its
+left and lower sides included, so that every point lies in one pixel. Reference [Hobby 1999], [Guibas 1998].
 """
 
 from typing import NamedTuple
@@ -140,7 +140,9 @@ def _line_meets(s: GridSegments, i: int, x: float, y: float) -> int:
     apart, apart_tail = two_diff(2.0 * cross, reach)
     apart += apart_tail + (2.0 * cross_tail - reach_tail - ux_tail - uy_tail)
     # every tail is at most u times its head, and each of the four roundings errs by u times a few of those
-    doubt = 4.0 * error + 32.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF * (2.0 * cross + reach) + 4.0 * UNIT_ROUNDOFF * abs(apart)
+    doubt = (
+        4.0 * error + 32.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF * (2.0 * cross + reach) + 4.0 * UNIT_ROUNDOFF * abs(apart)
+    )
     if apart > doubt:
         return 0
     return 1 if apart < -doubt else -1
@@ -150,7 +152,8 @@ def _line_meets(s: GridSegments, i: int, x: float, y: float) -> int:
 def _query(
     tree: PixelTree, s: GridSegments, state: LongArray, stack: LongArray, met: LongArray, certain: npt.NDArray[np.bool_]
 ) -> int:
-    """Write rows (segment, pixel) that meet, or may where not ``certain``; go on from state = (segment, stack height)."""
+    """Write rows (segment, pixel) that meet, or may where not ``certain``; go on from state = (segment, stack
+    height)."""
     leaves = len(tree.box) // 2
     n, budget = 0, _BUDGET
     while state[0] < len(s.ends) and n + _LEAF <= len(met) and budget > 0:
@@ -201,7 +204,8 @@ def _meets_exactly(a: list[float], b: list[float], cell: list[float], grid: tupl
 def met_pixels(
     begins: FloatArray, ends: FloatArray, cells: FloatArray, grid: tuple[float, float]
 ) -> tuple[LongArray, LongArray]:
-    """Return (segment, pixel), all pairs that meet, exactly. About O(log p + m) a short segment, O(sqrt p + m) a long one.
+    """Return (segment, pixel), all pairs that meet, exactly. About O(log p + m) a short segment, O(sqrt p + m) a long
+    one.
 
     Args:
         begins, ends: float64 (s, 2), the segments.

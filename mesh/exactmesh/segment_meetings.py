@@ -1,8 +1,8 @@
 """How two segments meet, exactly; and all pairs that do, in portions.
 
 Vertices are numbered so that equal positions have equal numbers. Two segments with a common end meet elsewhere only if
-they overlap, so the subdivision leaves such pairs out (a wheel has as many as it has spokes, squared), and a sort of the
-segments around each vertex finds those with equal directions.
+they overlap, so the subdivision leaves such pairs out (a wheel has as many as it has spokes, squared), and a sort of
+the segments around each vertex finds those with equal directions.
 """
 
 from collections.abc import Iterator
@@ -65,7 +65,7 @@ def _before(xy: FloatArray, v: int, w: int) -> bool:
 @jit
 def is_inside(k: Context, xy: FloatArray, a: int, b: int, v: int) -> bool:
     """Tell whether the vertex v lies inside the segment ab."""
-    if v == a or v == b:
+    if v in (a, b):
         return False
     low, high = (a, b) if _before(xy, a, b) else (b, a)
     return _before(xy, low, v) and _before(xy, v, high) and _turn(k, xy, a, b, v) == 0
@@ -126,14 +126,20 @@ def _gather_common(pool: Pool, segments: IntArray, begin: int, stop: int) -> int
 
 @jit_inline
 def _boxes_meet(box: FloatArray, i: int, j: int) -> bool:
-    return bool(
-        box[i, 0] <= box[j, 2] and box[j, 0] <= box[i, 2] and box[i, 1] <= box[j, 3] and box[j, 1] <= box[i, 3]
-    )
+    return bool(box[i, 0] <= box[j, 2] and box[j, 0] <= box[i, 2] and box[i, 1] <= box[j, 3] and box[j, 1] <= box[i, 3])
 
 
 @jit
 def _test_row(
-    k: Context, xy: FloatArray, segments: IntArray, pool: Pool, i: int, first: int, stop: int, out: MeetingArrays, n: int
+    k: Context,
+    xy: FloatArray,
+    segments: IntArray,
+    pool: Pool,
+    i: int,
+    first: int,
+    stop: int,
+    out: MeetingArrays,
+    n: int,
 ) -> int:
     """Test the segment of piece i against those of the pieces first .. stop - 1; return the length of ``out``."""
     begin = pool.start[pool.state[0] - 1]
@@ -144,7 +150,7 @@ def _test_row(
             continue
         t = pool.segment[j]
         c, d = segments[t, 0], segments[t, 1]
-        if a == c or a == d or b == c or b == d:
+        if a in (c, d) or b in (c, d):
             continue
         kind = meeting_of(k, xy, a, b, c, d)
         if kind != _NONE:
@@ -231,7 +237,14 @@ def _sort_around(
 
 @jit
 def _overlaps_around(
-    k: Context, xy: FloatArray, segments: IntArray, v: int, around: IntArray, n: int, out: MeetingArrays, place: IntArray
+    k: Context,
+    xy: FloatArray,
+    segments: IntArray,
+    v: int,
+    around: IntArray,
+    n: int,
+    out: MeetingArrays,
+    place: IntArray,
 ) -> int:
     """List the pairs of equal direction among the sorted segments at v from ``place`` on; return how many.
 
@@ -316,7 +329,7 @@ def meetings(points: FloatArray, segments: IntArray) -> Iterator[MeetingArrays]:
 
     Args:
         points: float64 (n, 2), finite.
-        segments: int32 (m, 2): rows of ``points``, equal positions by equal rows. A segment of two equal rows is a point.
+        segments: int32 (m, 2): rows of ``points``, equal positions by equal rows; twice the same row is a point.
     """
     xy, k = scaled_into_window(points)
     yield from _with_common_end(k, xy, segments)

@@ -1,12 +1,12 @@
 """A hierarchical subdivision that hands each cell the pieces of segments in it: which pairs of segments may meet?
 
-A cell is cut by a line, and each piece of a segment goes to the side or the sides on which it lies, clipped to them. The
-line's direction is one of the axes or runs along the pieces, whichever of a sample promises the fewest pairs: a bundle of
-long slanted segments, which boxes cannot tell apart, falls apart like a stack. A cell that no cut makes cheaper is a leaf,
-and all pairs in it are tested: where many segments cross, that costs about as much as what is found.
+A cell is cut by a line, and each piece of a segment goes to the side or the sides on which it lies, clipped to them.
+The line's direction is one of the axes or runs along the pieces, whichever of a sample promises the fewest pairs: a
+bundle of long slanted segments, which boxes cannot tell apart, falls apart like a stack. A cell that no cut makes
+cheaper is a leaf, and all pairs in it are tested: where many segments cross, that costs about as much as what is found.
 
-Clipping is done in doubles and errs on the side of keeping: a piece is an interval of parameters that surely contains all
-points of the segment in the cell. So every meeting survives to some leaf, and exactness is left to the test there.
+Clipping is done in doubles and errs on the side of keeping: a piece is an interval of parameters that surely contains
+all points of the segment in the cell. So every meeting survives to some leaf, and exactness is left to the test there.
 """
 
 import math
@@ -29,10 +29,13 @@ _MISSES = 1  # so many cuts in a row may fail to
 _WORST = 2.0  # all cuts above a cell may leave this multiple of the pairs: never worse than twice all pairs
 _DEPTH = 4096  # of the stack of cells; below, a cell is a leaf
 
-#: The value of a linear function at a point, computed, is off by at most 3 u (|a x| + |b y|), and interpolated between two
-#: ends by at most 4 u more; 16 u times the sum for both ends leaves half to spare. Scaled coordinates that underflowed are
-#: off by 2^-1074 each.
+#: The value of a (x - ox) + b (y - oy), computed, is off by at most 3 u times the sum of the absolute products, and
+#: interpolated between two ends by at most 4 u more; 16 u times the sum for both ends leaves half to spare. The origin
+#: is a point of the cell: so what a cut cannot tell apart is small beside the cell, and not beside the coordinates.
+#: Scaled coordinates that underflowed are off by 2^-1074 each.
 _ERROR = 16.0 * UNIT_ROUNDOFF
+#: A point between two ends, computed, is off by at most 3 u times the sum of their magnitudes.
+_BOX_ERROR = 4.0 * UNIT_ROUNDOFF
 _UNDERFLOW = 2.0**-1060
 
 
@@ -49,6 +52,7 @@ class Pool(NamedTuple):
         state: int64 (3,): number of cells; in the topmost cell: the next row of its pairs, or -1 where it was not
             looked at; and the length of its part with a common end.
         sample: float64 (_SAMPLE,): scratch.
+        origin: float64 (2,): where the cut of the topmost cell is measured from.
         box: float64 (m, 4): of each piece of a leaf, smallest x and y, largest x and y, rounded outwards.
     """
 
@@ -61,6 +65,7 @@ class Pool(NamedTuple):
     remaining: FloatArray
     state: npt.NDArray[np.int64]
     sample: FloatArray
+    origin: FloatArray
     box: FloatArray
 
 
@@ -85,6 +90,7 @@ def pool_of(points: FloatArray, segments: IntArray) -> Pool:
         remaining=np.ones(_DEPTH + 1),
         state=np.array([1 if m else 0, -1, 0], dtype=np.int64),
         sample=np.empty(_SAMPLE),
+        origin=np.zeros(2),
         box=np.empty((m, 4)),
     )
 
@@ -97,10 +103,20 @@ def grown(pool: Pool) -> Pool:
 
 @jit
 def _projected(pool: Pool, piece: int, a: float, b: float) -> tuple[float, float, float]:
-    """Return the values of a x + b y at both ends of a piece's segment, and how far values along it may be off."""
+    """Return a (x - ox) + b (y - oy) at both ends of a piece's segment, and how far values along it may be off."""
     s = pool.segment[piece]
-    ax, ay, bx, by = a * pool.ends[s, 0], b * pool.ends[s, 1], a * pool.ends[s, 2], b * pool.ends[s, 3]
+    ax, ay = a * (pool.ends[s, 0] - pool.origin[0]), b * (pool.ends[s, 1] - pool.origin[1])
+    bx, by = a * (pool.ends[s, 2] - pool.origin[0]), b * (pool.ends[s, 3] - pool.origin[1])
     return ax + ay, bx + by, _ERROR * (abs(ax) + abs(ay) + abs(bx) + abs(by)) + _UNDERFLOW
+
+
+@jit
+def _set_origin(pool: Pool, piece: int) -> None:
+    """Put the origin into the middle of a piece, or near it."""
+    s, t = pool.segment[piece], 0.5 * (pool.low[piece] + pool.high[piece])
+    for axis in range(2):
+        a, b = pool.ends[s, axis], pool.ends[s, axis + 2]
+        pool.origin[axis] = a + t * (b - a)
 
 
 @jit
@@ -131,12 +147,13 @@ def _middle(values: FloatArray, count: int) -> float:
             values[j] = values[j - 1]
             j -= 1
         values[j] = value
-    return 0.5 * (values[(count - 1) >> 1] + values[count >> 1])
+    return float(0.5 * (values[(count - 1) >> 1] + values[count >> 1]))
 
 
 @jit
 def _try_cut(pool: Pool, begin: int, step: int, count: int, a: float, b: float) -> tuple[float, float]:
-    """Return (c, cost): the cut a x + b y = c through the middle of a sample, and the part of its pairs that remains."""
+    """Return (c, cost): the cut a x + b y = c through the middle of a sample, and the part of its pairs that
+    remains."""
     middles = pool.sample
     for i in range(count):
         p = begin + i * step
@@ -213,12 +230,14 @@ def _cut(pool: Pool, begin: int, stop: int, a: float, b: float, c: float) -> tup
 
 @jit
 def split_top(pool: Pool) -> bool:
-    """Cut the topmost cell into two if that promises fewer pairs; tell whether it did. Needs room for its pieces twice."""
+    """Cut the topmost cell into two if that promises fewer pairs; tell whether it did. Needs room for its pieces
+    twice."""
     cell = pool.state[0] - 1
     begin, stop = pool.start[cell], pool.start[cell + 1]
     misses, remaining = pool.misses[cell], pool.remaining[cell]
     if stop - begin <= LEAF or cell + 2 >= _DEPTH or misses > _MISSES:
         return False
+    _set_origin(pool, (begin + stop) >> 1)
     a, b, c, cost = _best_cut(pool, begin, stop)
     if (cost > _GAIN and misses == _MISSES) or remaining * cost > _WORST:
         return False
@@ -240,6 +259,10 @@ def box_pieces(pool: Pool, begin: int, stop: int) -> None:
         for axis in range(2):
             a, b = pool.ends[s, axis], pool.ends[s, axis + 2]
             first, last = a + low * (b - a), a + high * (b - a)
-            error = _ERROR * (abs(a) + abs(b)) + _UNDERFLOW
+            error = _UNDERFLOW
+            if low <= 0.0 and high >= 1.0:
+                first, last = a, b
+            else:
+                error += _BOX_ERROR * (abs(a) + abs(b))
             pool.box[p - begin, axis] = min(first, last) - error
             pool.box[p - begin, axis + 2] = max(first, last) + error

@@ -1,11 +1,11 @@
 """Snap rounding: the arrangement drawn on a grid, planar whatever happens.
 
-A pixel is hot if a vertex of the exact arrangement lies in it: a point of the input, or a crossing. All vertices move to
-the centres of their pixels, and each segment is led through the centres of all hot pixels that it meets. Pieces may
-then coincide but not cross, and none passes through the centre of a pixel that its segment does not meet: if it did, the
-offsets of the segment from its two centres, both within a pixel, would put some point of the segment within the same
-offset of that third centre. Each chain stays within half a pixel's diagonal of its segment.
-Reference [Hobby 1999], [Guibas 1998].
+A pixel is hot if a vertex of the exact arrangement lies in it: a point of the input, or a crossing. All vertices move
+to the centres of their pixels, and each segment is led through the centres of all hot pixels that it meets. Pieces may
+then coincide but not cross, and none passes through the centre of a pixel that its segment does not meet: if it did,
+the offsets of the segment from its two centres, both within a pixel, would put some point of the segment within the
+same offset of that third centre. Each chain stays within half a pixel's diagonal of its segment. Reference [Hobby
+1999], [Guibas 1998].
 """
 
 import math
@@ -14,8 +14,8 @@ import numpy as np
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.chains import pieces_of
-from exactmesh.crossing_points import CrossingRounder, cells_of
 from exactmesh.coincident import first_of_each, lexicographic_order
+from exactmesh.crossing_points import CrossingRounder, cells_of
 from exactmesh.hot_pixels import met_pixels
 from exactmesh.noding import Graph, alone_of, chains_in, placed_meetings, with_places
 
