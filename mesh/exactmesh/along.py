@@ -33,7 +33,7 @@ def straight_edge(plane: Plane, a: int, b: int) -> int:
 def follow_range(
     plane: Plane, ends: IndexArray, first: int, stop: int, pieces: EdgeArray, count: int
 ) -> tuple[int, int, bool]:
-    """Follow the segments first .. stop - 1 from edge to edge; return (the next one, pieces so far, whether it is lost).
+    """Follow the segments first .. stop - 1 from edge to edge; return (next one, pieces so far, whether it is lost).
 
     Row after row, ``pieces`` (p, 2) becomes (edge, segment); where it is full, ``ends`` keeps what is left to do.
     """
