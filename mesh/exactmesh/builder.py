@@ -4,7 +4,7 @@ import math
 import operator
 from dataclasses import replace
 from itertools import islice
-from typing import Self, overload
+from typing import Self, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -16,15 +16,29 @@ from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import Coordinate, FloatArray, IntArray, PointLike
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.constrain import assembled, constrained_delaunay, cut_out, in_order
-from exactmesh.deletion import constraints_at, forget, is_only_apex, remove_vertex
+from exactmesh.constrain import Task, assembled, constrained_delaunay, cut_out, in_order
 from exactmesh.delaunay import Insertion
+from exactmesh.deletion import constraints_at, forget, is_only_apex, remove_vertex
 from exactmesh.draft import (
-    EDGES, FLIPS, NUMBERS, SEGMENTS, VERTICES, Draft, empty_draft, fitted, settled, standing, with_room,
+    EDGES,
+    FLIPS,
+    NUMBERS,
+    SEGMENTS,
+    VERTICES,
+    Draft,
+    empty_draft,
+    fitted,
+    settled,
+    standing,
+    with_room,
     with_room_for_segments,
 )  # fmt: skip
 from exactmesh.errors import (
-    CollinearPointsError, ConstrainedVertexError, CrossingError, TooFewPointsError, TopologyError,
+    CollinearPointsError,
+    ConstrainedVertexError,
+    CrossingError,
+    TooFewPointsError,
+    TopologyError,
 )  # fmt: skip
 from exactmesh.ids import Vertex
 from exactmesh.insertion import insert_vertices
@@ -39,12 +53,12 @@ _CHUNK = 1 << 15  # points between two looks at Ctrl-C, where predicates are fas
 _NAMED = 3  # segments that a message spells out
 
 
-def _row(x: "Coordinate | PointLike", y: "Coordinate | None") -> FloatArray:
+def _row(x: object, y: object) -> FloatArray:
     """Return a point as an array (1, 2) of finite doubles."""
     if type(x) is float and type(y) is float and math.isfinite(x) and math.isfinite(y):
         return np.array([[x, y]])
     try:
-        return finite_points([x if y is None else (x, y)], "point")
+        return finite_points(cast("npt.ArrayLike", [x if y is None else (x, y)]), "point")
     except TypeError:
         raise ShapeError(f"a point is a pair of coordinates, not {shown(x if y is None else (x, y))}") from None
 
@@ -106,9 +120,9 @@ it or pass through it
         ends = graph.representative[graph.segments]
         _, first = np.unique(np.sort(ends, axis=1), axis=0, return_index=True)
         ends = ends[np.sort(first)]
-        draft.count[SEGMENTS] = len(ends)
-        self._settle(draft._replace(ends=np.concatenate([ends, np.empty((8, 2), dtype=np.int32)])), len(graph.points))
-        if self._draft.count[NUMBERS] == 0:
+        draft.tally[SEGMENTS] = len(ends)
+        self._settle(draft._replace(ends=np.concatenate([ends, np.empty((8, 2), dtype=np.int64)])), len(graph.points))
+        if self._draft.tally[NUMBERS] == 0:
             constrained_delaunay(graph, carve=False)
             raise CrossingError([])
 
@@ -128,20 +142,20 @@ it or pass through it
 
     def __len__(self) -> int:
         """Return the number of vertices."""
-        return int(self._draft.count[VERTICES])
+        return int(self._draft.tally[VERTICES])
 
     def __repr__(self) -> str:
-        return f"TriangulationBuilder({len(self)} vertices, {self._draft.count[SEGMENTS]} segments)"
+        return f"TriangulationBuilder({len(self)} vertices, {self._draft.tally[SEGMENTS]} segments)"
 
     @property
     def vertices(self) -> IntArray:
         """The numbers of the vertices, int32 (n,), ascending. O(n)."""
-        return standing(self._draft, int(self._draft.count[NUMBERS]))
+        return standing(self._draft, int(self._draft.tally[NUMBERS]))
 
     @property
     def segments(self) -> IntArray:
         """The vertices that the segments join, int32 (s, 2), by the segments' numbers. O(s)."""
-        return self._draft.ends[: self._draft.count[SEGMENTS]].copy()
+        return self._draft.ends[: self._draft.tally[SEGMENTS]].astype(np.int32)
 
     @overload
     def insert_point(self, x: Coordinate, y: Coordinate, /) -> Vertex: ...
@@ -165,9 +179,9 @@ it or pass through it
         [0, 1, 2, 3, 1]
         """
         row = _row(x, y)
-        if self._draft.count[EDGES] == 0:
+        if self._draft.tally[EDGES] == 0:
             return Vertex(self._insert_flat(row))
-        p = int(self._draft.count[NUMBERS])
+        p = int(self._draft.tally[NUMBERS])
         self._draft = draft = _with_points(self._draft, row, p)
         insert_vertices(draft, np.array([p]), 0, 1)
         raise_if_interrupted()
@@ -186,15 +200,15 @@ it or pass through it
         [3, 2, 3, 6]
         """
         given = finite_points(points)
-        first, stop = int(self._draft.count[NUMBERS]), int(self._draft.count[NUMBERS]) + len(given)
+        first, stop = int(self._draft.tally[NUMBERS]), int(self._draft.tally[NUMBERS]) + len(given)
         if len(given) == 0:
             return np.empty(0, dtype=np.int32)
-        if self._draft.count[EDGES] == 0:
+        if self._draft.tally[EDGES] == 0:
             self._settle(self._pending(given), stop)
             return self._draft.twin[first:stop].copy()
         self._draft = draft = _with_points(self._draft, given, first)
         draft.twin[first:stop] = -1
-        draft.count[NUMBERS] = stop
+        draft.tally[NUMBERS] = stop
         original = first_of_each(given, lexicographic_order(given))
         rows = np.flatnonzero(original == np.arange(len(given)))
         numbers = first + rows[insertion_order(given[rows], 0)]
@@ -226,11 +240,11 @@ it or pass through it
         a, b = self._vertex(u), self._vertex(v)
         if a == b:
             raise TopologyError(f"a segment from vertex {u} to vertex {v} has no length", indices=[a])
-        if self._draft.count[EDGES] == 0:
+        if self._draft.tally[EDGES] == 0:
             return self._insert_flat_segment(a, b)
         way = look_along(self._draft, a, b)
         raise_if_interrupted()
-        number = int(self._draft.count[SEGMENTS])
+        number = int(self._draft.tally[SEGMENTS])
         if way.crossed:
             crossing = members(self._draft, self._draft.plane.crossed[: way.crossed])
             raise CrossingError([(s, number) for s in crossing])
@@ -259,7 +273,7 @@ it or pass through it
         """
         a, draft = self._vertex(v), self._draft
         self._places = {}
-        if draft.count[EDGES]:
+        if draft.tally[EDGES]:
             edges = draft.plane.crossed[: constraints_at(draft, a)]
             self._refuse_constrained(a, members(draft, edges))
             (forget if is_only_apex(draft, a) else remove_vertex)(draft, a)
@@ -269,7 +283,7 @@ it or pass through it
             forget(draft, a)
 
     def triangulation(self) -> Triangulation:
-        """Return the constrained Delaunay triangulation of the hull as it is now: frozen, and independent of the builder.
+        """Return the constrained Delaunay triangulation of the hull as it is now: frozen, a copy.
 
         Its vertices are numbered in the order of their numbers here: ``representative`` has the one of each, and -1 for
         those that were deleted. Its ``pslg`` are the vertices, in that order, and the segments; ``work`` counts since
@@ -280,13 +294,13 @@ it or pass through it
 
         O(n log n).
         """
-        draft, count = self._draft, self._draft.count
-        numbers, edges = int(count[NUMBERS]), int(count[EDGES])
+        draft, tally = self._draft, self._draft.tally
+        numbers, edges = int(tally[NUMBERS]), int(tally[EDGES])
         alive = standing(draft, numbers)
         name = np.full(draft.plane.ghost + 1, -1, dtype=np.int32)
         name[alive], name[draft.plane.ghost] = np.arange(len(alive), dtype=np.int32), len(alive)
         points = np.ldexp(draft.plane.xy.reshape(-1, 2)[alive], -draft.exponent)
-        ends = name[draft.ends[: count[SEGMENTS]]]
+        ends = name[draft.ends[: tally[SEGMENTS]]]
         graph = PSLG(points, ends)
         if edges == 0:
             return constrained_delaunay(graph, carve=False)
@@ -299,12 +313,12 @@ it or pass through it
             org,
             order.astype(np.int32),
             edges,
-            int(count[FLIPS]),
+            int(tally[FLIPS]),
         )
-        rows = np.empty((groups_of(draft, edges, draft.ends[:0]), 2), dtype=np.int32)
+        rows = np.empty((groups_of(draft, edges, draft.group[:0]), 2), dtype=np.int32)
         groups_of(draft, edges, rows)
-        constrained = in_order(draft.plane._replace(xy=xy, org=org), ends, rows)
-        mesh = assembled(graph, built, constrained, cut_out(graph, None, built, constrained))
+        task, constrained = Task(graph, graph, None, None), in_order(draft.plane._replace(xy=xy, org=org), ends, rows)
+        mesh = assembled(task, built, constrained, cut_out(task, built, constrained))
         twin = draft.twin[:numbers]
         return replace(mesh, representative=np.where(twin < 0, np.int32(-1), name[twin]))
 
@@ -315,7 +329,7 @@ it or pass through it
             number = operator.index(v)
         except TypeError:
             raise TopologyError(f"a vertex is an integer, not {shown(v)}") from None
-        if not 0 <= number < draft.count[NUMBERS]:
+        if not 0 <= number < draft.tally[NUMBERS]:
             raise TopologyError(f"there is no vertex {shown(v)}", indices=[number])
         stands = int(draft.twin[number])
         if stands < 0 or draft.twin[stands] < 0:
@@ -333,8 +347,8 @@ it or pass through it
     # As long as all vertices lie on one line, there is nothing but lists.
 
     def _pending(self, points: FloatArray) -> Draft:
-        """Return the draft with these points behind its vertex numbers, which do not count yet."""
-        first = int(self._draft.count[NUMBERS])
+        """Return the draft with these points behind its vertex numbers, which do not tally yet."""
+        first = int(self._draft.tally[NUMBERS])
         draft, numbers = _with_points(self._draft, points, first), first + np.arange(len(points), dtype=np.int32)
         known = standing(draft, first)
         places = np.concatenate([draft.plane.xy.reshape(-1, 2)[known], draft.plane.xy.reshape(-1, 2)[numbers]])
@@ -348,15 +362,15 @@ it or pass through it
         try:
             found = settled(draft, numbers)
         except (TooFewPointsError, CollinearPointsError):
-            count = draft.count.copy()
-            count[NUMBERS], count[VERTICES] = numbers, len(standing(draft, numbers))
-            found = draft._replace(count=count)
+            tally = draft.tally.copy()
+            tally[NUMBERS], tally[VERTICES] = numbers, len(standing(draft, numbers))
+            found = draft._replace(tally=tally)
         if found is not None:
             self._draft = found
 
     def _insert_flat(self, row: FloatArray) -> int:
         x, y = row[0].tolist()
-        p = int(self._draft.count[NUMBERS])
+        p = int(self._draft.tally[NUMBERS])
         places = self._flat_places()
         if (x, y) in places:
             return places[x, y]
@@ -366,30 +380,30 @@ it or pass through it
         if len(line) == 2 and orient2d(line[0], line[1], (x, y)) != 0:
             self._settle(draft, p + 1)
             return p
-        count = draft.count.copy()
-        count[NUMBERS], count[VERTICES] = p + 1, len(places) + 1
-        self._draft = draft._replace(count=count)
+        tally = draft.tally.copy()
+        tally[NUMBERS], tally[VERTICES] = p + 1, len(places) + 1
+        self._draft = draft._replace(tally=tally)
         places[x, y] = p
         return p
 
     def _flat_places(self) -> dict[tuple[float, float], int]:
         """Return the vertex at each position, made anew when something else has changed the vertices."""
         draft = self._draft
-        if len(self._places) != draft.count[VERTICES]:
+        if len(self._places) != draft.tally[VERTICES]:
             alive = self.vertices
             points = np.ldexp(draft.plane.xy.reshape(-1, 2)[alive], -draft.exponent)
             self._places = dict(zip(map(tuple, points.tolist()), alive.tolist(), strict=True))
         return self._places
 
     def _insert_flat_segment(self, a: int, b: int) -> int:
-        number = int(self._draft.count[SEGMENTS])
+        number = int(self._draft.tally[SEGMENTS])
         ends = self._draft.ends[:number]
         same = np.flatnonzero(((ends == (a, b)) | (ends == (b, a))).all(axis=1))
         if same.size:
             return int(same[0])
         self._draft = draft = with_room_for_segments(self._draft, 0)
         draft.ends[number] = a, b
-        draft.count[SEGMENTS] += 1
+        draft.tally[SEGMENTS] += 1
         return number
 
     def _flat_segments_at(self, v: int) -> list[int]:
@@ -397,6 +411,6 @@ it or pass through it
         xy = self._draft.plane.xy.reshape(-1, 2)
         rank = np.empty(len(xy), dtype=np.int64)
         rank[lexicographic_order(xy)] = np.arange(len(xy))
-        ends = rank[self._draft.ends[: self._draft.count[SEGMENTS]]]
+        ends = rank[self._draft.ends[: self._draft.tally[SEGMENTS]]]
         through = (ends.min(axis=1) <= rank[v]) & (rank[v] <= ends.max(axis=1))
         return np.flatnonzero(through).tolist()

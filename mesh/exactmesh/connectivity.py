@@ -3,14 +3,17 @@
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.jit import jit
+from exactkernel.context import Context, scaled_into_window
+from exactkernel.jit import jit, jit_inline
+from exactkernel.orient2d import orient2d_adaptive
+from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.edgealgebra import EdgeArray, link_ring
+from exactmesh.edgealgebra import EdgeArray, dest, link_ring, origin, splice
 from exactmesh.errors import TopologyError
 
 BoolArray = npt.NDArray[np.bool_]
 
-__all__ = ["check_corners", "check_neighbors", "edges_of", "loops_of", "neighbors_of", "rings_of"]
+__all__ = ["check_corners", "check_neighbors", "edges_of", "loops_of", "neighbors_of", "planar_rings_of", "rings_of"]
 
 
 def check_corners(triangles: IntArray) -> None:
@@ -220,4 +223,53 @@ def rings_of(triangles: IntArray, neighbors: IntArray) -> tuple[EdgeArray, EdgeA
     vertex = np.empty(2 * edges, dtype=np.int32)
     face = np.empty(2 * edges, dtype=np.int32)
     _fill_rings(triangles, neighbors, np.empty_like(neighbors), ring, vertex, face)
+    return ring, vertex, face
+
+
+@jit_inline
+def _is_between(k: Context, xy: FloatArray, o: int, a: int, p: int, b: int) -> bool:
+    """Tell whether, turning counterclockwise round o from a to b, one meets p; the three directions differ."""
+    ax, ay, bx, by, ox, oy = xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[o, 0], xy[o, 1]
+    from_a = orient2d_adaptive(k, ox, oy, ax, ay, xy[p, 0], xy[p, 1]) > 0
+    to_b = orient2d_adaptive(k, ox, oy, xy[p, 0], xy[p, 1], bx, by) > 0
+    return (from_a and to_b) if orient2d_adaptive(k, ox, oy, ax, ay, bx, by) > 0 else (from_a or to_b)
+
+
+@jit
+def _join_fans(k: Context, xy: FloatArray, ring: EdgeArray, vertex: EdgeArray, face: EdgeArray, gap: EdgeArray) -> None:
+    """Make one ring of the rings at each vertex, in the order of their directions.
+
+    ``gap`` (n,), all -1, becomes for each vertex on the boundary an edge that leaves it with OUTSIDE on its left.
+    """
+    for half in range(len(face)):
+        e = 2 * half
+        if face[(e ^ 3) >> 1] != -1:
+            continue
+        v = origin(vertex, e)
+        g = gap[v]
+        gap[v] = e
+        if g < 0:
+            continue
+        first = g
+        while not _is_between(k, xy, v, dest(vertex, g), dest(vertex, e), dest(vertex, ring[g])):
+            g = ring[g]
+            while face[(g ^ 3) >> 1] != -1:
+                g = ring[g]
+            if g == first:  # never, unless triangles overlap
+                break
+        splice(ring, g, e)
+
+
+@np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
+def planar_rings_of(
+    points: FloatArray, triangles: IntArray, neighbors: IntArray
+) -> tuple[EdgeArray, EdgeArray, EdgeArray]:
+    """Return what :func:`rings_of` does, with one ring at a vertex where the boundary meets itself.
+
+    O(m), and O(d^2) where d such pieces of the boundary meet.
+    """
+    ring, vertex, face = rings_of(triangles, neighbors)
+    xy, k = scaled_into_window(points)
+    _join_fans(k, xy, ring, vertex, face, np.full(len(points), -1, dtype=np.int32))
+    raise_if_interrupted()
     return ring, vertex, face

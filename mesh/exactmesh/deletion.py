@@ -52,7 +52,7 @@ def is_only_apex(draft: Draft, v: int) -> bool:
                 flat = False
         e = int(plane.ring[e])
         if e == first:
-            return flat and degree == draft.count[VERTICES]
+            return flat and degree == draft.tally[VERTICES]
 
 
 @jit_inline
@@ -129,8 +129,8 @@ def unite(plane: Plane, v: int) -> None:
 
 
 @jit_inline
-def sink(plane: Plane, v: int, hull: int) -> None:
-    """Let v and the ghost vertex become one: the edge between them goes, and the two triangles at it.
+def sink(plane: Plane, hull: int) -> None:
+    """Let v and the ghost vertex, the ends of the edge hull, become one: it goes, and the two triangles at it.
 
                w <-- ... <-- u            w <-- ... <-- u
               / \\    |      / \\          / \\    |      / \\
@@ -194,40 +194,40 @@ def renumber(draft: Draft, source: int, target: int) -> None:
 @jit_inline
 def close_gaps(draft: Draft) -> None:
     """Let the last edges take the numbers of the three that went: they stand on the stack."""
-    stack, count = draft.plane.stack, draft.count
+    stack, tally = draft.plane.stack, draft.tally
     for _ in range(3):
         k = 0
         for i in range(1, 3):
             if stack[i] > stack[k]:
                 k = i
-        count[EDGES] -= 1
-        if stack[k] != count[EDGES]:
-            renumber(draft, count[EDGES], stack[k])
+        tally[EDGES] -= 1
+        if stack[k] != tally[EDGES]:
+            renumber(draft, tally[EDGES], stack[k])
         stack[k] = -1
 
 
 @jit
 def remove_vertex(draft: Draft, v: int) -> None:
     """Delete the vertex v, at which no constrained edge ends, and without which there are still triangles."""
-    plane, count = draft.plane, draft.count
+    plane, tally = draft.plane, draft.tally
     height, degree, hull = collect_star(plane, v)
     neighbor = dest(plane.org, int(plane.stack[0]))
     cut = cut_ears(plane, v, height, degree, hull >= 0)
     if hull < 0:
         unite(plane, v)
     else:
-        sink(plane, v, hull)
+        sink(plane, hull)
     legalize_ears(plane, cut)
     close_gaps(draft)
     draft.twin[v] = -1
-    count[VERTICES] -= 1
-    if count[START] == v:
-        count[START] = neighbor
+    tally[VERTICES] -= 1
+    if tally[START] == v:
+        tally[START] = neighbor
 
 
 @jit
 def forget(draft: Draft, v: int) -> None:
     """Delete the vertex v, without which there is no triangle."""
     draft.twin[v] = -1
-    draft.count[VERTICES] -= 1
-    draft.count[EDGES] = 0
+    draft.tally[VERTICES] -= 1
+    draft.tally[EDGES] = 0

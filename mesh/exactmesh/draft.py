@@ -1,9 +1,8 @@
 """A triangulation that grows: the arrays of a builder, and how they are made, enlarged and rescaled."""
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from exactkernel.context import bits_of, exponent_into_window, guarded_context, rebounded
 from exactkernel.jit import jit
@@ -12,6 +11,7 @@ from exactmesh.constrain import first_spokes, insert_segments
 from exactmesh.delaunay import MAX_POINTS, insert_points
 from exactmesh.edgealgebra import EdgeArray
 from exactmesh.errors import TooManyPointsError
+from exactmesh.ordering import IndexArray
 from exactmesh.plane import Plane
 
 __all__ = [
@@ -31,11 +31,9 @@ __all__ = [
     "with_room_for_segments",
 ]
 
-#: Entries of ``Draft.count``: how many edges there are (0: no triangle yet), vertex numbers given, vertices, segments,
+#: Entries of ``Draft.tally``: how many edges there are (0: no triangle yet), vertex numbers given, vertices, segments,
 #: and groups; the vertex where the next walk starts; the flips so far.
 EDGES, NUMBERS, VERTICES, SEGMENTS, GROUPS, START, FLIPS = range(7)
-
-CountArray: TypeAlias = npt.NDArray[np.int64]
 
 
 class Draft(NamedTuple):
@@ -50,7 +48,7 @@ class Draft(NamedTuple):
         twin: the vertex that stands for each vertex number: itself, another one at its position, or -1: deleted.
         ends: (s, 2), the vertices that each segment joins.
         group: (g, 2), each group of segments as another one, or -1, and one segment more.
-        count: see EDGES and so on.
+        tally: see EDGES and so on.
         maximum, unit: the bits of the coordinates given so far.
         exponent: the power of two that they were multiplied by, so that predicates are fast.
     """
@@ -58,9 +56,9 @@ class Draft(NamedTuple):
     plane: Plane
     owner: EdgeArray
     twin: IntArray
-    ends: IntArray
+    ends: IndexArray
     group: IntArray
-    count: CountArray
+    tally: IndexArray
     maximum: float
     unit: float
     exponent: int
@@ -72,16 +70,16 @@ def _blank_plane(room: int) -> Plane:
         guarded_context(), xy=np.zeros(2 * room), ring=np.zeros(12 * room, whole), org=np.zeros(6 * room, whole),
         spoke=np.zeros(room, whole), fixed=np.zeros(3 * room, flags), loose=np.zeros(3 * room, flags),
         crossed=np.empty(3 * room, whole), left=np.empty(3 * room + 8, whole), right=np.empty(3 * room + 8, whole),
-        stack=np.empty(9 * room + 24, whole), ghost=room,
+        stack=np.empty(9 * room + 24, dtype=np.int64), ghost=room,
     )  # fmt: skip
 
 
 def empty_draft() -> Draft:
     """Return a draft without vertices."""
     room = 8
-    none = np.empty((room, 2), dtype=np.int32)
     owner, twin = np.empty(3 * room, dtype=np.int32), np.empty(room, dtype=np.int32)
-    return Draft(_blank_plane(room), owner, twin, none, none.copy(), np.zeros(7, dtype=np.int64), 0.0, np.inf, 0)
+    ends, group = np.empty((room, 2), dtype=np.int64), np.empty((room, 2), dtype=np.int32)
+    return Draft(_blank_plane(room), owner, twin, ends, group, np.zeros(7, dtype=np.int64), 0.0, np.inf, 0)
 
 
 def with_room(draft: Draft, vertices: int) -> Draft:
@@ -99,7 +97,7 @@ def with_room(draft: Draft, vertices: int) -> Draft:
     for name in ("xy", "ring", "org", "spoke", "fixed"):
         held = getattr(old, name)
         getattr(new, name)[: len(held)] = held
-    org = new.org[: 2 * int(draft.count[EDGES])]
+    org = new.org[: 2 * int(draft.tally[EDGES])]
     org[org == room] = new.ghost
     owner, twin = np.empty(3 * new.ghost, dtype=np.int32), np.empty(new.ghost, dtype=np.int32)
     owner[: 3 * room], twin[:room] = draft.owner, draft.twin
@@ -108,7 +106,7 @@ def with_room(draft: Draft, vertices: int) -> Draft:
 
 def with_room_for_segments(draft: Draft, more_groups: int) -> Draft:
     """Return a draft with room for one segment more and so many groups more. Amortised O(1)."""
-    segments, groups = int(draft.count[SEGMENTS]) + 1, int(draft.count[GROUPS]) + more_groups
+    segments, groups = int(draft.tally[SEGMENTS]) + 1, int(draft.tally[GROUPS]) + more_groups
     ends, group = draft.ends, draft.group
     if segments > len(ends):
         ends = np.concatenate([ends, np.empty_like(ends)])
@@ -165,24 +163,24 @@ def settled(draft: Draft, numbers: int) -> Draft | None:
         TooFewPointsError, CollinearPointsError: there is no triangle.
     """
     vertices = standing(draft, numbers)
-    points, segments = draft.plane.xy.reshape(-1, 2), int(draft.count[SEGMENTS])
+    points, segments = draft.plane.xy.reshape(-1, 2), int(draft.tally[SEGMENTS])
     built = insert_points(points[vertices])
-    plane, count = _blank_plane(draft.plane.ghost), draft.count.copy()
+    plane, tally = _blank_plane(draft.plane.ghost), draft.tally.copy()
     draft.plane.k.counts[:] += built.k.counts
     plane.ring[: 4 * built.edges] = built.ring[: 4 * built.edges]
     names = np.append(vertices[built.order], plane.ghost)
     plane.org[: 2 * built.edges] = names[built.org[: 2 * built.edges]]
     first_spokes(plane.org, built.edges, plane.spoke)
     plane = plane._replace(k=draft.plane.k, xy=draft.plane.xy)
-    pieces = insert_segments(plane, draft.ends[:segments])
+    pieces = insert_segments(plane, draft.ends[:segments].astype(np.int32))
     if pieces is None:
         return None
     owner = np.full(len(draft.owner), -1, dtype=np.int32)
     group = np.empty((segments + len(pieces) + 8, 2), dtype=np.int32)
-    count[GROUPS] = group_pieces(pieces, segments, owner, group)
-    count[EDGES], count[START], count[FLIPS] = built.edges, vertices[0], count[FLIPS] + built.flips
-    count[NUMBERS], count[VERTICES] = numbers, len(vertices)
-    return draft._replace(plane=plane, owner=owner, group=group, count=count)
+    tally[GROUPS] = group_pieces(pieces, segments, owner, group)
+    tally[EDGES], tally[START], tally[FLIPS] = built.edges, vertices[0], tally[FLIPS] + built.flips
+    tally[NUMBERS], tally[VERTICES] = numbers, len(vertices)
+    return draft._replace(plane=plane, owner=owner, group=group, tally=tally)
 
 
 def standing(draft: Draft, numbers: int) -> IntArray:

@@ -13,7 +13,7 @@ __all__ = ["insert_vertices"]
 
 @jit_inline
 def legalize_link(plane: Plane, first: int, p: int) -> int:
-    """Flip the edges of p's link, from the edge first on counterclockwise, until only fixed ones are in conflict with p.
+    """Flip the edges of p's link, counterclockwise from first on, until only fixed ones are in conflict with p.
 
     Returns the number of flips.
     """
@@ -72,25 +72,25 @@ def halve(draft: Draft, e: int, new: int) -> int:
 @jit_inline
 def insert_vertex(draft: Draft, p: int) -> int:
     """Insert the vertex p, whose coordinates are there; return the vertex at its position, which may be another one."""
-    plane, count = draft.plane, draft.count
+    plane, tally = draft.plane, draft.tally
     ring, org = plane.ring, plane.org
-    e, where = walk(plane, count[START], p)
+    e, where = walk(plane, tally[START], p)
     if where == ON_VERTEX:
-        count[START] = origin(org, e)
+        tally[START] = origin(org, e)
         return origin(org, e)
-    new = count[EDGES]
+    new = tally[EDGES]
     split_face(ring, org, e, 4 * new, p)
     for edge in range(new, new + 3):
         plane.fixed[edge], draft.owner[edge] = False, -1
     if where == ON_EDGE:
         e = halve(draft, e, new)
-        count[FLIPS] += 1
-    count[FLIPS] += legalize_link(plane, e, p)
+        tally[FLIPS] += 1
+    tally[FLIPS] += legalize_link(plane, e, p)
     renew_spokes(plane, p, 4 * new)
-    count[EDGES] += 3
-    count[NUMBERS] = max(count[NUMBERS], p + 1)
-    count[VERTICES] += 1
-    count[START] = p
+    tally[EDGES] += 3
+    tally[NUMBERS] = max(tally[NUMBERS], p + 1)
+    tally[VERTICES] += 1
+    tally[START] = p
     return p
 
 

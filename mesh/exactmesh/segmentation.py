@@ -80,7 +80,7 @@ def add_segment(draft: Draft, order: IndexArray, pieces: EdgeArray) -> None:
 
     ``pieces`` has a row for each of its edges, and there is room for as many groups and one more.
     """
-    plane, owner, group, count = draft.plane, draft.owner, draft.group, draft.count
+    plane, owner, group, tally = draft.plane, draft.owner, draft.group, draft.tally
     s = order[0]
     constrain_range(plane, draft.ends, order, 0, 1, pieces, 0)
     alone = old = new = -1
@@ -88,17 +88,17 @@ def add_segment(draft: Draft, order: IndexArray, pieces: EdgeArray) -> None:
         e = pieces[i, 0]
         if owner[e] < 0:
             if alone < 0:
-                alone = count[GROUPS]
+                alone = tally[GROUPS]
                 group[alone, 0], group[alone, 1] = -1, s
-                count[GROUPS] += 1
+                tally[GROUPS] += 1
             owner[e] = alone
         else:
             if owner[e] != old:
-                old, new = owner[e], count[GROUPS]
+                old, new = owner[e], tally[GROUPS]
                 group[new, 0], group[new, 1] = old, s
-                count[GROUPS] += 1
+                tally[GROUPS] += 1
             owner[e] = new
-    count[SEGMENTS] += 1
+    tally[SEGMENTS] += 1
 
 
 @jit

@@ -14,9 +14,9 @@ from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW, Context
 from exactkernel.types import FloatArray, IntArray, Stage
 from exactmesh.arrangement import Arrangement
 from exactmesh.columns import MarkerArray
-from exactmesh.connectivity import edges_of, loops_of
+from exactmesh.connectivity import check_corners, check_neighbors, edges_of, loops_of, planar_rings_of
 from exactmesh.errors import ShapeError, TopologyError
-from exactmesh.locate import locate_points
+from exactmesh.locate import locate_points, on_boundary
 from exactmesh.markers import boundary_edges, markers_of_edges
 from exactmesh.pslg import PSLG
 from exactmesh.quadedge import QuadEdge
@@ -222,26 +222,52 @@ class Triangulation:
         return _frozen(markers_of_edges(self.edges, on_boundary, self.segments, self.segment_markers))
 
     def locate(self, points: npt.ArrayLike) -> IntArray:
-        """Return the triangle that contains each point, int32 (k,), -1 for points outside the hull.
+        """Return the triangle that contains each point, int32 (k,), -1 for points outside the domain.
 
         A point on an edge or a vertex gets one of the triangles there. Exact; a walk along a space-filling curve, so
-        near-linear for many points. Raises as :func:`exactmesh.delaunay` does.
+        near-linear for many points. A domain that is not convex is completed to its hull first, once: O(m + b log b)
+        for b edges on its boundary. Raises as :func:`exactmesh.delaunay` does.
 
         >>> from exactmesh import delaunay
         >>> mesh = delaunay([(0, 0), (1, 0), (0, 1)])
         >>> mesh.locate([(0.2, 0.2), (0.5, 0.5), (1, 1)]).tolist()
         [0, 0, -1]
         """
-        return locate_points(self.points, self.triangles, self.neighbors, finite_points(points))
+        queries, m = finite_points(points), len(self.triangles)
+        if m == 0:
+            return np.full(len(queries), -1, dtype=np.int32)
+        triangles, neighbors = self._complete
+        found = locate_points(self.points, triangles, neighbors, queries)
+        outside = np.flatnonzero(found >= m)
+        if outside.size:
+            found[outside] = on_boundary(self.points, triangles, neighbors, m, queries[outside], found[outside])
+        return found
+
+    @cached_property
+    def _complete(self) -> tuple[IntArray, IntArray]:
+        """Triangles and neighbors that cover the hull, these first."""
+        try:
+            if len(self.hull):
+                return self.triangles, self.neighbors
+        except TopologyError:
+            pass
+        from exactmesh.completion import completed  # which triangulates, and so imports this module
+
+        return completed(self.points, self.triangles, self.neighbors)
 
     def quad_edge(self) -> QuadEdge:
         """Return a quad-edge of the triangulation, a fresh and mutable one: faces are triangle numbers, or OUTSIDE.
+
+        Where triangles meet in a vertex without an edge between them, its ring has all its edges in their order, with
+        OUTSIDE in the gaps.
 
         >>> from exactmesh import delaunay
         >>> delaunay([(0, 0), (1, 0), (1, 1), (0, 1)]).quad_edge().counts()
         (4, 5, 3)
         """
-        return QuadEdge.from_triangles(self.triangles, self.neighbors)
+        check_corners(self.triangles)
+        check_neighbors(self.triangles, self.neighbors)
+        return QuadEdge.from_arrays(*planar_rings_of(self.points, self.triangles, self.neighbors))
 
     def statistics(self) -> Statistics:
         """Return counts, angles, areas and lengths, in plain floating point. O(m)."""
