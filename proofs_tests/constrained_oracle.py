@@ -15,13 +15,14 @@ __all__ = [
     "chain",
     "components",
     "constrained_triangles",
+    "contains",
     "crosses",
-    "domain",
     "edges_of",
     "in_circle",
     "is_visible",
     "noded",
     "parity",
+    "places",
     "signed_area",
 ]
 
@@ -157,29 +158,29 @@ def contains(points: Sequence[RationalPoint], t: Triangle, p: RationalPoint) -> 
     return min(oracles.orient(a, b, p), oracles.orient(b, c, p), oracles.orient(c, a, p)) >= 0
 
 
-def domain(
+def places(
     points: Sequence[RationalPoint],
     segments: Sequence[Segment],
     triangles: Sequence[Triangle],
-    holes: Iterable[RationalPoint] = (),
+    holes: Iterable[RationalPoint],
     *,
     even_odd: bool,
-) -> set[int]:
-    """Return the rows of triangles of the hull that are in the domain: all of a face are, or none."""
+) -> list[str]:
+    """Where each triangle of the hull is: "domain", "exterior" (it reaches infinity) or "hole". Whole faces are."""
     pieces = noded(points, segments)
     sides = Counter(edge for t in triangles for edge in edges_of(t))
     open_ = {edge for edge, count in sides.items() if count == 1} - pieces
-    kept: set[int] = set()
+    found = [""] * len(triangles)
     for face in components(triangles, pieces):
-        outside = any(edge in open_ for row in face for edge in edges_of(triangles[row]))
         parities = {parity(points, segments, centroid(points, triangles[row])) for row in face}
         dug = any(contains(points, triangles[row], hole) for row in face for hole in holes)
-        if even_odd:
-            assert len(parities) == 1
-            outside = parities == {0}
-        if not outside and not dug:
-            kept |= face
-    return kept
+        place = "hole" if dug or (even_odd and parities == {0}) else "domain"
+        if any(edge in open_ for row in face for edge in edges_of(triangles[row])):
+            place = "exterior"
+        assert len(parities) == 1 or not even_odd
+        for row in face:
+            found[row] = place
+    return found
 
 
 def signed_area(points: Sequence[RationalPoint], loop: Sequence[int]) -> Fraction:

@@ -1,16 +1,15 @@
 """Hypothesis strategies for planar straight line graphs: T-junctions, overlaps, duplicates, isolated points, rings."""
 
-from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple
 
 from hypothesis import strategies as st
 from proofs_tests import oracles
-from proofs_tests.constrained_oracle import Segment, chain, crosses, noded
+from proofs_tests.constrained_oracle import Segment, crosses, noded
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.mesh_strategies import point_sets
 
-__all__ = ["Graph", "graphs", "ring_sets"]
+__all__ = ["Graph", "Seeded", "graphs", "grid_graphs", "ring_sets", "seeded"]
 
 
 class Graph(NamedTuple):
@@ -18,6 +17,15 @@ class Graph(NamedTuple):
 
     points: list[Point]
     segments: list[Segment]
+
+
+class Seeded(NamedTuple):
+    """A graph, seeds of holes and regions, and the rule; the seeds may lie anywhere."""
+
+    graph: Graph
+    holes: list[Point]
+    regions: list[tuple[float, float, float, float]]
+    even_odd: bool
 
 
 def planar(points: list[Point], wanted: list[Segment]) -> list[Segment]:
@@ -60,6 +68,8 @@ def ring_sets(draw: st.DrawFn) -> Graph:
     """
     cell = st.tuples(st.integers(0, 4).map(float), st.integers(0, 4).map(float))
     rings = draw(st.lists(st.lists(cell, min_size=3, max_size=5, unique=True), min_size=1, max_size=4))
+    if draw(st.booleans()):
+        rings.insert(0, [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)])
     points: list[Point] = draw(st.lists(cell, max_size=2))
     segments: list[Segment] = []
     for ring in rings:
@@ -72,7 +82,30 @@ def ring_sets(draw: st.DrawFn) -> Graph:
     return Graph(points, segments)
 
 
-def interior_points(graph: Graph) -> list[tuple[Fraction, Fraction]]:
-    """Vertices on the inside of segments, for tests of the strategies themselves."""
-    exact = oracles.rationals(graph.points)
-    return [exact[v] for s in graph.segments for v in chain(exact, s)[1:-1]]
+@st.composite
+def grid_graphs(draw: st.DrawFn) -> Graph:
+    """Many segments between neighbors on a grid, so that they close faces; mostly within a frame of long ones."""
+    points = draw(st.permutations([(float(x), float(y)) for x in range(4) for y in range(4)]))
+    index = st.integers(0, 15)
+    corners = [points.index(corner) for corner in ((0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0))]
+    frame = [*pairwise([*corners, corners[0]])] if draw(st.integers(0, 7)) else []
+    near = draw(st.lists(st.tuples(index, st.sampled_from([(0, 1), (1, 0), (1, 1), (3, 0)])), max_size=30))
+    wanted = frame
+    for i, (dx, dy) in near:
+        other = (points[i][0] + dx, points[i][1] + dy)
+        if other in points:
+            wanted.append((i, points.index(other)))
+    return Graph(points, planar(points, wanted))
+
+
+@st.composite
+def seeded(draw: st.DrawFn) -> Seeded:
+    """Rings or grid graphs with seeds at quarter steps, so that few lie on segments."""
+    rings = draw(st.booleans())
+    graph = draw(ring_sets() if rings else grid_graphs())
+    step = st.integers(0, 4)
+    seed = st.tuples(step.map(lambda i: i + 0.25), step.map(lambda i: i + 0.375))
+    value = st.integers(0, 2).map(float)
+    holes = draw(st.lists(seed, max_size=2))
+    regions = [(x, y, draw(value), -1.0) for x, y in draw(st.lists(seed, max_size=3))]
+    return Seeded(graph, holes, regions, rings and draw(st.booleans()))

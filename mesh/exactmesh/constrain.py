@@ -19,14 +19,14 @@ from exactmesh.columns import MarkerArray
 from exactmesh.crossings import Arrangement, Meeting, arrange, find_crossings
 from exactmesh.delaunay import Insertion, Progress, insert_points, number_vertices
 from exactmesh.edgealgebra import EdgeArray, dest
-from exactmesh.errors import ChoiceError, CrossingError
+from exactmesh.errors import ChoiceError, CrossingError, Fault, FaultKind, PSLGError, ShapeError
 from exactmesh.extract import triangles_of
 from exactmesh.locate import locate_points
 from exactmesh.markers import boundary_edges, markers_along, vertex_markers
 from exactmesh.ordering import IndexArray
 from exactmesh.plane import BoolArray, Plane, march, toward
 from exactmesh.pslg import PSLG, Carve
-from exactmesh.regions import Place, check_closed, check_parity, places_of, regions_of
+from exactmesh.regions import Place, check_parity, open_faults, places_of, regions_of
 from exactmesh.triangulation import Triangulation, work_of
 
 __all__ = ["Crossings", "constrained_delaunay"]
@@ -246,7 +246,7 @@ def cut_out(task: Task, built: Insertion, edges: Constrained) -> Cut:
     """Extract the triangles, and keep those of the domain.
 
     Raises:
-        PSLGError: the segments leave the domain open, or a seed lies outside of it.
+        PSLGError: the segments leave the domain open, a seed lies outside of it, or nothing is left of it.
     """
     graph, rule = task.graph, task.rule
     slot = np.full(2 * built.edges, -1, dtype=np.int32)
@@ -258,16 +258,20 @@ def cut_out(task: Task, built: Insertion, edges: Constrained) -> Cut:
     _mark(odd, sides[np.bincount(edges.row, minlength=len(sides)) % 2 == 1])
     seeds = np.concatenate([graph.holes, graph.regions[:, :2]])
     found = locate_points(graph.points[built.order], triangles, neighbors, seeds) if len(seeds) else positions[:0]
-    if rule is None:
-        place = np.zeros(len(triangles), dtype=np.int32)
-    else:
-        place = places_of(graph, rule, neighbors, fixed, odd, found)
+    place = np.zeros(len(triangles), dtype=np.int32)
+    faults: list[Fault] = []
+    if rule is not None:
+        place, faults = places_of(graph, rule, neighbors, fixed, odd, found)
     around = np.where(sides >= 0, place[sides >> 2], Place.EXTERIOR)
     if rule is Carve.SEEDS:
         lost = (around == Place.EXTERIOR).all(axis=1)
-        check_closed(task.source, np.unique(edges.segment[lost[edges.row]]))
-    region = regions_of(graph, neighbors, fixed, place, found[len(graph.holes) :])
+        faults = open_faults(task.source, np.unique(edges.segment[lost[edges.row]])) + faults
     kept = place == Place.DOMAIN
+    if not (faults or kept.any()):
+        faults = [Fault(FaultKind.EMPTY_DOMAIN, (), "every face is exterior, or a hole")]
+    if faults:
+        raise PSLGError(faults)
+    region = regions_of(graph, neighbors, fixed, place, found[len(graph.holes) :])
     if not kept.all():
         number = np.full(len(kept) + 1, -1, dtype=np.int32)
         number[:-1][kept] = np.arange(kept.sum(), dtype=np.int32)
@@ -359,9 +363,11 @@ def constrained_delaunay(
 
     Raises:
         CrossingError: segments cross; ``pairs`` names them all.
-        PSLGError: what is to be carved is not closed, a seed lies outside of the domain, or two seeds disagree.
+        PSLGError: what is to be carved is not closed, a seed lies outside of the domain, two seeds disagree, or
+            nothing is left.
         TooFewPointsError, CollinearPointsError, TooManyPointsError, SeedError: as for :func:`exactmesh.delaunay`.
         ChoiceError: ``carve`` or ``crossings`` is none of the words.
+        ShapeError: ``pslg`` is no :class:`PSLG`.
 
     Expected O(n log n) and the edges that segments cross. Reference [Chew 1989], [Shewchuk 2015].
 
@@ -374,6 +380,8 @@ def constrained_delaunay(
     >>> [loop.tolist() for loop in mesh.boundary()]
     [[0, 1, 2, 3], [4, 6, 5]]
     """
+    if not isinstance(pslg, PSLG):
+        raise ShapeError(f"expected a PSLG, not a {type(pslg).__name__}: make one with PSLG(points, segments)")
     rule = (pslg.rule if carve else None) if isinstance(carve, bool) else Carve(carve)
     treatment = Crossings(crossings)
     if rule is Carve.EVEN_ODD:

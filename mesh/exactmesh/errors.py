@@ -107,6 +107,7 @@ class FaultKind(StrEnum):
     REGIONS_DISAGREE = "regions disagree"  # (first region, later one)
     NOT_CLOSED = "not closed"  # (segment,), or () where there is none
     INCONSISTENT_PARITY = "inconsistent parity"  # (point,)
+    EMPTY_DOMAIN = "empty domain"  # ()
     RING_TOO_SHORT = "ring too short"  # (ring,)
     NOT_A_RING = "not a ring"  # (point,)
 
@@ -124,6 +125,7 @@ _REMEDIES = {
     FaultKind.REGIONS_DISAGREE: "give them the same attribute and area, or a segment between them",
     FaultKind.NOT_CLOSED: "close the outline, or keep the hull with carve=False",
     FaultKind.INCONSISTENT_PARITY: "close the rings, or carve by seeds",
+    FaultKind.EMPTY_DOMAIN: "look at the rule and the holes, or keep the hull with carve=False",
     FaultKind.RING_TOO_SHORT: "a ring needs three vertices at different positions",
     FaultKind.NOT_A_RING: "in a union of rings each point is the end of two segments, or of none",
 }

@@ -14,7 +14,7 @@ from exactmesh.errors import Fault, FaultKind, PSLGError
 from exactmesh.plane import BoolArray
 from exactmesh.pslg import PSLG, Carve
 
-__all__ = ["Place", "check_closed", "check_parity", "places_of", "regions_of"]
+__all__ = ["Place", "check_parity", "open_faults", "places_of", "regions_of"]
 
 
 class Place(IntEnum):
@@ -103,14 +103,11 @@ def _count(degree: int) -> str:
 
 def places_of(
     pslg: PSLG, rule: Carve, neighbors: IntArray, fixed: BoolArray, odd: BoolArray, seeds: IntArray
-) -> IntArray:
-    """Return the :class:`Place` of each triangle, int32 (m,). O(m).
+) -> tuple[IntArray, list[Fault]]:
+    """Return the :class:`Place` of each triangle, int32 (m,), and which seeds are outside of the domain. O(m).
 
     ``fixed`` (m, 3) tells which edges are constrained, ``odd`` which of them by an odd number of segments; ``seeds``
     are the triangles of the holes' seeds, then those of the regions' seeds, or -1.
-
-    Raises:
-        PSLGError: a seed is outside of what is to be triangulated.
     """
     place = np.zeros(len(neighbors), dtype=np.int32)
     stack = np.empty(len(neighbors), dtype=np.int32)
@@ -126,9 +123,7 @@ def places_of(
             stack[0] = t
             flood(neighbors, fixed, place, Place.HOLE, stack, 1)
     faults += _outside(FaultKind.REGION_OUTSIDE, "region", pslg.regions.tolist(), regions, place != Place.DOMAIN)
-    if faults:
-        raise PSLGError(faults)
-    return place
+    return place, faults
 
 
 def _outside(
@@ -138,20 +133,15 @@ def _outside(
     return [Fault(kind, (i,), f"{what} {i} at {tuple(seeds[i][:2])} is outside the domain") for i in lost]
 
 
-def check_closed(pslg: PSLG, lost: IntArray) -> None:
-    """Refuse segments, ``lost``, that have the exterior on both sides: what should they bound?
-
-    Raises:
-        PSLGError: there is such a segment, or no segment at all.
-    """
+def open_faults(pslg: PSLG, lost: IntArray) -> list[Fault]:
+    """Return the faults of segments, ``lost``, that have the exterior on both sides: what should they bound?"""
     faults = [
         Fault(FaultKind.NOT_CLOSED, (int(s),), f"segment {s} {tuple(pslg.segments[s].tolist())} bounds nothing")
         for s in lost
     ]
     if len(pslg.segments) == 0:
         faults.append(Fault(FaultKind.NOT_CLOSED, (), "without segments there is nothing to carve"))
-    if faults:
-        raise PSLGError(faults)
+    return faults
 
 
 def regions_of(pslg: PSLG, neighbors: IntArray, fixed: BoolArray, place: IntArray, seeds: IntArray) -> IntArray:

@@ -201,8 +201,9 @@ class Triangulation:
         >>> mesh.chain(0).tolist()
         [[0, 3], [3, 1]]
         """
-        if self.pslg is None or not 0 <= segment < len(self.pslg.segments):
-            raise TopologyError(f"there is no segment {segment}", indices=[segment])
+        if self.pslg is None or segment not in range(len(self.pslg.segments)):
+            raise TopologyError(f"there is no segment {segment!r}")
+        segment = int(segment)
         rows = self._by_segment
         first, last = np.searchsorted(rows[:, 1], [segment, segment + 1])
         edges = self.segments[rows[first:last, 0]]
