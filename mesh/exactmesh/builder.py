@@ -15,8 +15,9 @@ from exactkernel.errors import ShapeError, shown
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import Coordinate, FloatArray, IntArray, PointLike
+from exactmesh.assembly import Task, assembled, cut_out, in_order
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.constrain import Task, assembled, constrained_delaunay, cut_out, in_order
+from exactmesh.constrain import constrained_delaunay
 from exactmesh.delaunay import Insertion
 from exactmesh.deletion import constraints_at, forget, is_only_apex, remove_vertex
 from exactmesh.draft import (

@@ -122,10 +122,12 @@ def _warm_up(console: Console) -> None:
 
 def _run(given: FloatArray | PSLG) -> _Run:
     start = time.perf_counter()
-    graph = given if isinstance(given, PSLG) else None
-    triangulation = delaunay(given) if graph is None else constrained_delaunay(graph, crossings="split")
+    if isinstance(given, PSLG):
+        triangulation = constrained_delaunay(given, crossings="split")
+        domain = given if triangulation.arrangement is None else triangulation.arrangement.pslg
+    else:
+        triangulation, domain = delaunay(given), None
     middle = time.perf_counter()
-    domain = graph if triangulation.arrangement is None else triangulation.arrangement.pslg
     report = verify(triangulation.points, triangulation.triangles, domain=domain)
     return _Run(triangulation, report, (middle - start, time.perf_counter() - middle))
 
