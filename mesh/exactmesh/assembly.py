@@ -11,12 +11,13 @@ from exactmesh.columns import MarkerArray
 from exactmesh.crossings import Arrangement
 from exactmesh.delaunay import Insertion, number_vertices
 from exactmesh.edgealgebra import EdgeArray
+from exactmesh.errors import Fault, FaultKind, PSLGError
 from exactmesh.extract import triangles_of
 from exactmesh.locate import locate_points
 from exactmesh.markers import boundary_edges, markers_along, vertex_markers
 from exactmesh.plane import BoolArray, Plane
 from exactmesh.pslg import PSLG, Carve
-from exactmesh.regions import Place, places_of, regions_of
+from exactmesh.regions import Place, open_faults, places_of, regions_of
 from exactmesh.triangulation import Triangulation, work_of
 
 __all__ = ["Constrained", "Cut", "Task", "assembled", "cut_out", "in_order", "of_source"]

@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 
 from exactkernel.context import chunk_size
+from exactkernel.errors import ShapeError
 from exactkernel.jit import jit, jit_inline
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import IntArray

@@ -98,7 +98,7 @@ def demo(folder: str, console: Console) -> bool:
     Raises:
         OSError: the folder or a picture cannot be written.
     """
-    sets = {"mosaic": mosaic(), "lake": lake(), "course": course_points()}
+    sets: dict[str, FloatArray | PSLG] = {"mosaic": mosaic(), "lake": lake(), "course": course_points()}
     _warm_up(console)
     runs = {}
     for name, given in sets.items():

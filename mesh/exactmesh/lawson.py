@@ -19,8 +19,9 @@ from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, PointLike, Sign
 from exactmesh.along import edges_along
+from exactmesh.assembly import Constrained, Cut, Task, assembled, in_order
 from exactmesh.connectivity import neighbors_of, rings_of
-from exactmesh.constrain import Constrained, Cut, Task, assembled, in_order, plane_of
+from exactmesh.constrain import plane_of
 from exactmesh.delaunay import Insertion
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
 from exactmesh.errors import InadmissibleError, TooFewPointsError, TopologyError
