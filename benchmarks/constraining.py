@@ -14,6 +14,15 @@ def _same(graph: Graph) -> Graph:
     return graph
 
 
+def _compiled(graph: Graph) -> Graph:
+    """Compile what only graphs with crossings need."""
+    from exactmesh import PSLG, constrained_delaunay
+
+    cross = PSLG([(0, 0), (3, 1), (0, 1), (3, 0)], [(0, 1), (2, 3)])
+    constrained_delaunay(cross, carve=False, crossings="split")
+    return graph
+
+
 def _exactmesh(graph: Graph) -> int:
     from exactmesh import PSLG, constrained_delaunay
 
@@ -78,7 +87,7 @@ def _geos(polygons: Any) -> int:
 
 CONSTRAINERS: dict[str, Mesher] = {
     "exactmesh-constrained": Mesher(
-        "exactmesh", "exactmesh", _same, _exactmesh, 'constrained_delaunay(PSLG(points, segments), crossings="split")'
+        "exactmesh", "exactmesh", _compiled, _exactmesh, 'constrained_delaunay(PSLG(points, segments), crossings="split")'
     ),
     "triangle-constrained": Mesher("Triangle", "triangle", _same, _triangle, "triangulate(graph, 'p'), 'pc' if open"),
     "cdt-constrained": Mesher(
