@@ -118,6 +118,15 @@ def _is_exact(
 
 
 @jit
+def _zero_if_possible(x: float, tail: float, error: float) -> tuple[float, float, float]:
+    """Return zero if it is within the bounds: doubles are so dense there that no bound would ever single it out."""
+    magnitude = abs(x) + abs(tail)
+    if magnitude <= error < math.inf:
+        return 0.0, 0.0, 2.0 * error
+    return x, tail, error
+
+
+@jit
 def crossing_in_pairs(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -152,6 +161,8 @@ def crossing_in_pairs(
         exact_det, exact_num, scratch = k.scratch[0:16], k.scratch[16:32], k.scratch[32:]
         n_det = determinant_2x2(ux, ux_tail, vy, vy_tail, uy, uy_tail, vx, vx_tail, exact_det, scratch)
         n_num = determinant_2x2(wx, wx_tail, vy, vy_tail, wy, wy_tail, vx, vx_tail, exact_num, scratch)
+        x, x_tail, x_error = _zero_if_possible(x, x_tail, x_error)
+        y, y_tail, y_error = _zero_if_possible(y, y_tail, y_error)
         if _is_exact(x, ax, ux, ux_tail, exact_det, n_det, exact_num, n_num, scratch):
             x_tail = x_error = 0.0
         if _is_exact(y, ay, uy, uy_tail, exact_det, n_det, exact_num, n_num, scratch):

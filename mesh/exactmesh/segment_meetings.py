@@ -38,6 +38,9 @@ class Meeting(IntEnum):
 
 
 _CROSSING, _TOUCH, _OVERLAP, _NONE = 0, 1, 2, -1
+_MANY = 1 << 14  # segments that fill a cache
+#: A zero bit before each of the eight bits of the index.
+_SPREAD = np.array([sum((i >> bit & 1) << 2 * bit for bit in range(8)) for i in range(256)], dtype=np.int64)
 _BUDGET = 1 << 24  # pairs tested between two looks at Ctrl-C
 _LEAST_ROOM = 1 << 16  # of a portion
 _SHARED_LEAF = 4 * LEAF  # in larger leaves the pairs with a common end are not even looked at
@@ -154,7 +157,7 @@ def _test_row(
             continue
         kind = meeting_of(k, xy, a, b, c, d)
         if kind != _NONE:
-            out.first[n], out.second[n], out.kind[n] = min(s, t), max(s, t), kind
+            out.first[n], out.second[n], out.kind[n] = s, t, kind
             n += 1
     return n
 
@@ -324,6 +327,17 @@ def _with_common_end(k: Context, xy: FloatArray, segments: IntArray) -> Iterator
                 raise_if_interrupted()
 
 
+def _neighbours_first(points: FloatArray, segments: IntArray) -> IntArray:
+    """Return an order in which segments that begin near each other are near each other in memory: along a Z curve."""
+    if len(segments) < _MANY:
+        return np.arange(len(segments), dtype=np.int32)
+    begins = 0.5 * points[segments[:, 0]]
+    low, high = begins.min(axis=0), begins.max(axis=0)
+    cells = ((begins - low) / np.maximum(high - low, 2.0**-1074) * 65535.0).astype(np.int64)
+    keys = _SPREAD[cells & 255] | _SPREAD[cells >> 8] << 16
+    return np.argsort(keys[:, 0] << 1 | keys[:, 1]).astype(np.int32)
+
+
 def meetings(points: FloatArray, segments: IntArray) -> Iterator[MeetingArrays]:
     """Yield all pairs of segments that meet in a point which is not an end of both; a pair may come more than once.
 
@@ -333,6 +347,8 @@ def meetings(points: FloatArray, segments: IntArray) -> Iterator[MeetingArrays]:
     """
     xy, k = scaled_into_window(points)
     yield from _with_common_end(k, xy, segments)
+    order = _neighbours_first(points, segments)
+    segments = segments[order]
     pool, budget = pool_of(points, segments), chunk_size(k, _BUDGET)
     out = _room(max(2 * len(segments), _LEAST_ROOM))
     while pool.state[0] > 0:
@@ -342,4 +358,5 @@ def meetings(points: FloatArray, segments: IntArray) -> Iterator[MeetingArrays]:
         n = _advance(k, xy, segments, pool, out, budget)
         raise_if_interrupted()
         if n:
-            yield _taken(out, n)
+            first, second = order[out.first[:n]], order[out.second[:n]]
+            yield MeetingArrays(np.minimum(first, second), np.maximum(first, second), out.kind[:n].copy())
