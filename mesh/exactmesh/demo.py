@@ -143,7 +143,7 @@ def _table(runs: Mapping[str, _Run]) -> Table:
     for k, step in enumerate(("triangulated in", "verified in")):
         table.add_row(step, *(f"{1000.0 * run.seconds[k]:.1f} ms" for run in runs.values()))
     table.add_section()
-    for claim in Property:
+    for claim in reports[0].findings:
         table.add_row(str(claim), *(_verdict(report, claim) for report in reports))
     table.add_section()
     for predicate in reports[0].stages:

@@ -19,8 +19,11 @@
   incircle: not called
 """
 
+from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
+    CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
+    DOMAIN_TRIANGULATION,
     ChoiceError,
     Kind,
     Orientation,
@@ -32,10 +35,13 @@ from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, Verifica
 from exactmesh.verify.verifier import verify
 
 __all__ = [
+    "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
+    "DOMAIN_TRIANGULATION",
     "FORMAT",
     "WITNESSES",
     "ChoiceError",
+    "Domain",
     "Finding",
     "Kind",
     "Orientation",

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.context import Context
+from exactkernel.context import Context, chunk_size
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
@@ -14,7 +14,7 @@ from exactmesh.verify.links import BOUNDARY, Links, ends_of, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.witness import IndexArray
 
-__all__ = ["Boundary", "boundary_of", "convex_cycle", "lexicographically_before", "outside_of"]
+__all__ = ["Boundary", "boundary_of", "convex_cycle", "is_one_loop", "lexicographically_before", "outside_of"]
 
 
 _CHUNK = 1 << 14  # points between two looks at Ctrl-C
@@ -47,24 +47,28 @@ def lexicographically_before(points: FloatArray, v: int, w: int) -> bool:
 
 
 @jit
-def walk_convex(k: Context, points: FloatArray, origin: IndexArray, successor: IndexArray, cycle: IndexArray) -> bool:
-    """Follow the chain from slot 0, write its vertices, and tell whether the conditions of theorem C hold."""
-    i, steps, reversals = 0, 0, 0
-    while True:
+def walk_convex(
+    k: Context, points: FloatArray, origin: IndexArray, successor: IndexArray, cycle: IndexArray, begin: int, end: int
+) -> int:
+    """Follow the chain from step ``begin`` to step ``end``, from the slot that ``cycle[begin]`` holds. Write its
+    vertices, and after them the next slot; return how often the direction changed, -1 where the chain turns right or
+    comes back too early."""
+    i, reversals = cycle[begin], 0
+    for step in range(begin, end):
         j = successor[i]
         u, v, w = origin[i], origin[j], origin[successor[j]]
         forward = lexicographically_before(points, u, v)
         reverses = forward != lexicographically_before(points, v, w)
         turn = orient2d_adaptive(k, points[u, 0], points[u, 1], points[v, 0], points[v, 1], points[w, 0], points[w, 1])
-        if turn < 0 or (turn == 0 and reverses):
-            return False
+        if turn < 0 or (turn == 0 and reverses) or (j == 0) != (step == len(origin) - 1):
+            return -1
         if reverses:
             reversals += 1
-        cycle[steps] = u
-        steps += 1
+        cycle[step] = u
         i = j
-        if i == 0:
-            return steps == len(origin) and reversals == 2
+    if end < len(cycle):
+        cycle[end] = i
+    return reversals
 
 
 def convex_cycle(mesh: Mesh, boundary: Boundary) -> IndexArray | None:
@@ -77,10 +81,36 @@ def convex_cycle(mesh: Mesh, boundary: Boundary) -> IndexArray | None:
     origin, target, _ = boundary
     if not len(origin) or (origin[1:] == origin[:-1]).any():
         return None
-    cycle = np.empty_like(origin)
-    convex = walk_convex(mesh.context, mesh.coordinates, origin, np.searchsorted(origin, target), cycle)
-    raise_if_interrupted()
-    return cycle if convex else None
+    cycle, successor, reversals = np.zeros_like(origin), np.searchsorted(origin, target), 0
+    step = chunk_size(mesh.context, _CHUNK)
+    for begin in range(0, len(origin), step):
+        end = min(begin + step, len(origin))
+        found = walk_convex(mesh.context, mesh.coordinates, origin, successor, cycle, begin, end)
+        raise_if_interrupted()
+        if found < 0:
+            return None
+        reversals += found
+    return cycle if reversals == 2 else None
+
+
+@jit
+def loop_length(successor: IndexArray) -> int:
+    """Return after how many steps the chain from slot 0 is back there."""
+    steps, i = 1, successor[0]
+    while i != 0:
+        i = successor[i]
+        steps += 1
+    return steps
+
+
+def is_one_loop(boundary: Boundary) -> bool:
+    """Tell whether the boundary is one loop through different vertices, or empty. O(b)."""
+    origin, target, _ = boundary
+    if not len(origin):
+        return True
+    if (origin[1:] == origin[:-1]).any():
+        return False
+    return bool(loop_length(np.searchsorted(origin, target)) == len(origin))
 
 
 @jit

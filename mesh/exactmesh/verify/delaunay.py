@@ -1,6 +1,9 @@
 """DELAUNAY: locally by the links, globally by the Delaunay lemma."""
 
+from dataclasses import replace
+
 import numpy as np
+import numpy.typing as npt
 
 from exactmesh.verify.links import NOT_DELAUNAY, Links, ends_of, slots_of
 from exactmesh.verify.mesh import Mesh
@@ -18,7 +21,7 @@ from exactmesh.verify.witness import (
     triangle_name,
 )
 
-__all__ = ["check_delaunay", "enclosed_points"]
+__all__ = ["check_circles", "check_constrained", "check_delaunay", "enclosed_points"]
 
 
 def enclosed_points(unused: IndexArray, used: IndexArray, first: IndexArray) -> IndexArray:
@@ -45,11 +48,57 @@ def check_delaunay(
         enclosed: unused points that are at no corner, where the triangles tile the hull.
         missing: which of ADMISSIBLE and COVERS_HULL do not hold.
     """
+    slots = slots_of(links, NOT_DELAUNAY)
+    return _finding(mesh, shapes, links, slots, enclosed, Property.DELAUNAY, missing)
+
+
+def check_constrained(
+    mesh: Mesh, shapes: Shapes, links: Links, constrained: npt.NDArray[np.bool_], enclosed: IndexArray
+) -> Finding:
+    """CONSTRAINED_DELAUNAY, for admissible triangles whose edges contain what of the segments lies in their union.
+
+    Theorem E. If the far corner d of an edge ab that no segment contains lies inside the circle of abc, it is visible
+    from points of abc near ab. Conversely, let p be inside the circle of t and visible from x in t. Visibility is
+    blocked by closed sets, so x may be moved until the way from x to p meets no vertex: it crosses edges without
+    segments between triangles t, t', ..., the last with p as a corner or in its closure. Across each of them incircle
+    <= 0, so the power of p with respect to their circles does not grow on the way: p is inside the last circle. So p is
+    no corner, but an unused point; one in the union is inside the circle of a triangle around it, and visible.
+
+    Args:
+        mesh: the input.
+        shapes: of its triangles.
+        links: theirs.
+        constrained: (3m,) True at the slots that stand for edges on segments.
+        enclosed: unused points within the closed union that are at no corner.
+    """
+    slots = np.flatnonzero((links.kinds == NOT_DELAUNAY) & ~constrained)
+    return _finding(mesh, shapes, links, slots, enclosed, Property.CONSTRAINED_DELAUNAY, ())
+
+
+def check_circles(mesh: Mesh, shapes: Shapes, missing: tuple[Property, ...]) -> Finding:
+    """CONSTRAINED_DELAUNAY where something is missing: all that can be said is whether there are circles."""
+    finding = finding_of(
+        np.flatnonzero(shapes.orientation == 0), lambda t: _without_circle(mesh, t, Property.CONSTRAINED_DELAUNAY)
+    )
+    if finding.verdict is Verdict.FAILS:
+        return replace(finding, lower_bound=True)
+    return Finding(Verdict.UNDECIDED, because=missing) if len(mesh.triangles) else finding
+
+
+def _finding(
+    mesh: Mesh,
+    shapes: Shapes,
+    links: Links,
+    slots: IndexArray,
+    enclosed: IndexArray,
+    property_: Property,
+    missing: tuple[Property, ...],
+) -> Finding:
     degenerate = np.flatnonzero(shapes.orientation == 0)
     parts = [
-        finding_of(degenerate, lambda t: _without_circle(mesh, t)),
-        _edges(mesh, links),
-        finding_of(enclosed, lambda v: _enclosed(mesh, v)),
+        finding_of(degenerate, lambda t: _without_circle(mesh, t, property_)),
+        _edges(mesh, links, slots, property_),
+        finding_of(enclosed, lambda v: _enclosed(mesh, v, property_)),
     ]
     count = sum(part.count for part in parts)
     if count:
@@ -60,19 +109,18 @@ def check_delaunay(
     return Finding(Verdict.HOLDS)
 
 
-def _without_circle(mesh: Mesh, t: int) -> Violation:
+def _without_circle(mesh: Mesh, t: int, property_: Property) -> Violation:
     corners = tuple(mesh.triangles[t].tolist())
     message = f"triangle {t} = {triangle_name(mesh.points, corners)} has no area, hence no circumcircle"
-    return Violation(Property.DELAUNAY, Kind.ZERO_AREA, (t,), corners, message)
+    return Violation(property_, Kind.ZERO_AREA, (t,), corners, message)
 
 
-def _enclosed(mesh: Mesh, v: int) -> Violation:
+def _enclosed(mesh: Mesh, v: int, property_: Property) -> Violation:
     message = f"unused point {point_name(mesh.points, v)} lies inside the circumcircle of a triangle around it"
-    return Violation(Property.DELAUNAY, Kind.POINT_IN_CIRCLE, (), (v,), message)
+    return Violation(property_, Kind.POINT_IN_CIRCLE, (), (v,), message)
 
 
-def _edges(mesh: Mesh, links: Links) -> Finding:
-    slots = slots_of(links, NOT_DELAUNAY)
+def _edges(mesh: Mesh, links: Links, slots: IndexArray, property_: Property) -> Finding:
     if not slots.size:
         return Finding(Verdict.HOLDS)
     told = slots[:WITNESSES]
@@ -99,7 +147,7 @@ def _edges(mesh: Mesh, links: Links) -> Finding:
             message += ", rounding-sized"
         vertices = (*corners, int(d[i]))
         return Violation(
-            Property.DELAUNAY,
+            property_,
             Kind.POINT_IN_CIRCLE,
             triangles,
             vertices,

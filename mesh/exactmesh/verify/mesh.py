@@ -13,7 +13,18 @@ from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.witness import finding_of, point_name
 
-__all__ = ["Mesh", "check_finite", "check_indices", "index_triples", "prepared_mesh"]
+__all__ = [
+    "Integers",
+    "Mesh",
+    "check_finite",
+    "check_indices",
+    "index_pairs",
+    "index_triples",
+    "points_of",
+    "prepared_mesh",
+]
+
+Integers = npt.NDArray[np.integer[npt.NBitBase]]
 
 _MAX_POINTS = 2**31  # indices are packed in pairs into 62 bits
 
@@ -35,10 +46,12 @@ class Mesh:
     triangles: IntArray
 
 
-def prepared_mesh(points: FloatArray, triangles: npt.NDArray[np.integer[npt.NBitBase]]) -> Mesh:
-    """Return the mesh of finite points and valid indices."""
-    coordinates, context = scaled_into_window(points)
-    return Mesh(points, coordinates, context, np.ascontiguousarray(triangles, dtype=np.int32))
+def prepared_mesh(points: FloatArray, triangles: Integers, others: FloatArray) -> tuple[Mesh, FloatArray]:
+    """Return the mesh of finite points and valid indices, and other points that its context is for as well."""
+    together = np.concatenate([points, others]) if len(others) else points
+    coordinates, context = scaled_into_window(together)
+    mesh = Mesh(points, coordinates[: len(points)], context, np.ascontiguousarray(triangles, dtype=np.int32))
+    return mesh, coordinates[len(points) :]
 
 
 def points_of(points: npt.ArrayLike) -> FloatArray:
@@ -54,22 +67,35 @@ def points_of(points: npt.ArrayLike) -> FloatArray:
     return doubles
 
 
-def index_triples(triangles: npt.ArrayLike) -> npt.NDArray[np.integer[npt.NBitBase]]:
+def index_triples(triangles: npt.ArrayLike) -> Integers:
     """Return the triangles as an integer array (m, 3); an empty list is no triangles.
 
     Raises:
         ShapeError: another shape, or a dtype that is not integer.
     """
+    return _index_rows(triangles, "triangles", "m", 3)
+
+
+def index_pairs(segments: npt.ArrayLike, name: str = "segments") -> Integers:
+    """Return segments as an integer array (s, 2); an empty list is no segments.
+
+    Raises:
+        ShapeError: another shape, or a dtype that is not integer.
+    """
+    return _index_rows(segments, name, "s", 2)
+
+
+def _index_rows(rows: npt.ArrayLike, name: str, letter: str, width: int) -> Integers:
     try:
-        array = np.asarray(triangles)
+        array = np.asarray(rows)
     except ValueError as error:  # ragged
-        raise ShapeError(f"triangles is not an array of shape (m, 3): {error}") from None
-    if array.shape in ((0,), (0, 3)):
-        return np.empty((0, 3), dtype=np.int32)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ShapeError(f"triangles has shape {array.shape}; expected (m, 3)")
+        raise ShapeError(f"{name} is not an array of shape ({letter}, {width}): {error}") from None
+    if array.shape in ((0,), (0, width)):
+        return np.empty((0, width), dtype=np.int32)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ShapeError(f"{name} has shape {array.shape}; expected ({letter}, {width})")
     if array.dtype.kind not in "iu":
-        raise ShapeError(f"triangles has dtype {array.dtype}; expected an integer type")
+        raise ShapeError(f"{name} has dtype {array.dtype}; expected an integer type")
     return array
 
 
@@ -84,7 +110,7 @@ def check_finite(points: FloatArray) -> Finding:
     )
 
 
-def check_indices(triangles: npt.NDArray[np.integer[npt.NBitBase]], n: int) -> Finding:
+def check_indices(triangles: Integers, n: int) -> Finding:
     """INDICES. O(m)."""
     a, b, c = triangles.T
     repeated = (a == b) | (b == c) | (c == a)

@@ -11,14 +11,18 @@ from enum import StrEnum
 from exactmesh.errors import ChoiceError
 
 __all__ = [
+    "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
+    "DOMAIN_TRIANGULATION",
     "ChoiceError",
     "Kind",
     "Orientation",
     "Property",
     "Severity",
     "Verdict",
+    "asked_properties",
     "claimed_properties",
+    "default_claims",
     "orientation_of",
 ]
 
@@ -57,6 +61,29 @@ class Property(StrEnum):
     DELAUNAY = "delaunay"
     """Every triangle has an area and no point of the set, used or not, strictly inside its circumcircle.
     UNDECIDED without ADMISSIBLE and COVERS_HULL unless a violation is found or there is no triangle."""
+    SEGMENTS_PRESENT = "segments_present"
+    """Every segment is a strictly monotone chain of edges of the triangles, exactly collinear, from end to end, by
+    index. Of a segment of the domain, between points of the mesh at the positions of its ends, parts may be missing that
+    lie outside of the closed domain and outside of all triangles; but two such segments may only cross in a corner or in
+    an end of a segment. UNDECIDED without ADMISSIBLE if some segment is no chain."""
+    CONSTRAINED_DELAUNAY = "constrained_delaunay"
+    """Every triangle has an area, and no point of the set, used or not, that is strictly inside its circumcircle is
+    visible from its interior: for no x in the interior of the triangle does the open line segment from x to the point
+    avoid the segments and the boundary of the triangles' union. UNDECIDED without ADMISSIBLE and SEGMENTS_PRESENT
+    unless a triangle has no area."""
+    COVERS_DOMAIN = "covers_domain"
+    """The union of the triangles is the closed domain: the closure of those faces of its segments that its rule
+    chooses, see :class:`Domain`. A hole's point that lies on a segment is in no face. UNDECIDED without ADMISSIBLE, or
+    if a segment does not run along edges within the triangles (see SEGMENTS_PRESENT)."""
+    DOMAIN_POINTS = "domain_points"
+    """Every point of the domain's list that lies in the closed domain is at the position of a corner. UNDECIDED without
+    COVERS_DOMAIN if some point is at no corner."""
+    NO_NEW_POINTS = "no_new_points"
+    """Every corner is at the position of a point of the domain's list: no Steiner points."""
+    REGIONS = "regions"
+    """Triangles on both sides of an edge that lies on no segment have the same label, and where points of regions lie
+    within a face of the segments that triangles cover, their label is the attribute of one of these points. UNDECIDED
+    without ADMISSIBLE and SEGMENTS_PRESENT."""
     WEAKLY_ACUTE = "weakly_acute"
     """Every triangle has an area and no angle above 90 degrees."""
     ACUTE = "acute"
@@ -115,26 +142,95 @@ class Kind(StrEnum):
     POINT_IN_CIRCLE = "point_in_circle"
     OBTUSE_ANGLE = "obtuse_angle"
     RIGHT_ANGLE = "right_angle"
+    NO_SEGMENT = "no_segment"
+    MISSING_SEGMENT = "missing_segment"
+    OFF_SEGMENTS = "off_segments"
+    COVERED_HOLE = "covered_hole"
+    COVERED_OUTSIDE = "covered_outside"
+    MISSING_POINT = "missing_point"
+    NEW_POINT = "new_point"
+    LABELS_DIFFER = "labels_differ"
+    WRONG_LABEL = "wrong_label"
 
 
-def claimed_properties(claims: Collection[Property | str] | None) -> tuple[Property, ...]:
-    """Return the claims in the order of the enum; None stands for a Delaunay triangulation.
+#: The default claims with segments: a constrained Delaunay triangulation of the hull of the points.
+CONSTRAINED_TRIANGULATION: tuple[Property, ...] = (
+    *(property_ for property_ in DELAUNAY_TRIANGULATION if property_ is not Property.DELAUNAY),
+    Property.SEGMENTS_PRESENT,
+    Property.CONSTRAINED_DELAUNAY,
+)
+
+#: The default claims with a domain: a constrained Delaunay triangulation of it. Its boundary may touch itself in a
+#: vertex; points that no triangle uses may be listed, if they lie outside of it; Steiner points may be there.
+DOMAIN_TRIANGULATION: tuple[Property, ...] = (
+    Property.FINITE,
+    Property.INDICES,
+    Property.ORIENTATION,
+    Property.EDGE_MANIFOLD,
+    Property.ADMISSIBLE,
+    Property.SEGMENTS_PRESENT,
+    Property.CONSTRAINED_DELAUNAY,
+    Property.COVERS_DOMAIN,
+    Property.DOMAIN_POINTS,
+)
+
+#: What each property needs besides points and triangles.
+_NEEDS = {
+    Property.SEGMENTS_PRESENT: "segments or a domain",
+    Property.CONSTRAINED_DELAUNAY: "segments or a domain",
+    Property.COVERS_DOMAIN: "a domain",
+    Property.DOMAIN_POINTS: "a domain",
+    Property.NO_NEW_POINTS: "a domain",
+    Property.REGIONS: "labels, and segments or a domain",
+}
+
+
+def asked_properties(*, segments: bool, domain: bool, labels: bool) -> tuple[Property, ...]:
+    """Return the properties that can be decided with what was given."""
+    given = {
+        "segments or a domain": segments or domain,
+        "a domain": domain,
+        "labels, and segments or a domain": labels and (segments or domain),
+    }
+    return tuple(property_ for property_ in Property if property_ not in _NEEDS or given[_NEEDS[property_]])
+
+
+def default_claims(asked: tuple[Property, ...]) -> tuple[Property, ...]:
+    """Return what is claimed if nothing else is said: of what was asked, what :func:`verify` promises."""
+    if Property.COVERS_DOMAIN in asked:
+        claims = DOMAIN_TRIANGULATION
+    elif Property.SEGMENTS_PRESENT in asked:
+        claims = CONSTRAINED_TRIANGULATION
+    else:
+        claims = DELAUNAY_TRIANGULATION
+    return (*claims, Property.REGIONS) if Property.REGIONS in asked else claims
+
+
+def claimed_properties(
+    claims: Collection[Property | str] | None, asked: tuple[Property, ...] = tuple(Property)
+) -> tuple[Property, ...]:
+    """Return the claims in the order of the enum; None stands for what the given things are expected to be.
+
+    In names "-" stands for "_".
 
     Raises:
-        ChoiceError: a claim is no property, or there is none.
+        ChoiceError: a claim is no property, or needs what was not given, or there is none.
     """
     if claims is None:
-        return DELAUNAY_TRIANGULATION
+        return default_claims(asked)
     try:
         claims = (claims,) if isinstance(claims, str) else tuple(claims)
     except TypeError:
         raise ChoiceError(f"claims={claims!r} is no collection of properties") from None
     if not claims:
         raise ChoiceError("no claim: nothing would be promised; None claims a Delaunay triangulation")
-    unknown = [claim for claim in claims if claim not in tuple(Property)]
-    if unknown:
-        raise ChoiceError(f"{unknown[0]!r} is no property; choose from {', '.join(Property)}")
-    return tuple(property_ for property_ in Property if property_ in claims)
+    named = {claim: claim.replace("-", "_") if isinstance(claim, str) else claim for claim in claims}
+    for claim, name in named.items():
+        if name not in tuple(Property):
+            raise ChoiceError(f"{claim!r} is no property; choose from {', '.join(Property)}")
+        if name not in asked:
+            raise ChoiceError(f"{name} cannot be claimed without {_NEEDS[Property(name)]}")
+    return tuple(property_ for property_ in Property if property_ in named.values())
 
 
 def orientation_of(orientation: Orientation | str) -> Orientation:

@@ -102,7 +102,8 @@ class Report:
     """The verdict on every property of a mesh.
 
     Attributes:
-        findings: a :class:`Finding` for each :class:`Property`, claimed or not.
+        findings: a :class:`Finding` for each :class:`Property`, claimed or not; but without segments, domain or labels
+            none for what is about these.
         claims: the properties that were claimed.
         point_count, triangle_count: the size of the input.
         stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
@@ -143,8 +144,9 @@ class Report:
         return tuple(violation for finding in self.findings.values() for violation in finding.violations)
 
     def verdict(self, property_: Property) -> Verdict:
-        """Return the verdict on one property."""
-        return self.findings[property_].verdict
+        """Return the verdict on one property; UNDECIDED where nothing was given to decide it by."""
+        finding = self.findings.get(property_)
+        return Verdict.UNDECIDED if finding is None else finding.verdict
 
     def raise_if_failed(self) -> None:
         """Raise unless every claimed property holds.
@@ -182,11 +184,12 @@ class Report:
     def _lines(self) -> Iterator[str]:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
         yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
+        width = max(map(len, self.findings))
         for property_, finding in self.findings.items():
             claimed = property_ in self.claims
             fails = finding.verdict is Verdict.FAILS
             mark = _UNCLAIMED_FAILS if fails and not claimed else _MARKS[finding.verdict]
-            yield f"  {mark} {property_:<16} {self._summary(property_, finding)}"
+            yield f"  {mark} {property_:<{width}} {self._summary(property_, finding)}"
             if fails and not claimed:
                 continue
             for violation in finding.violations[:_SHOWN]:

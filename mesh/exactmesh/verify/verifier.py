@@ -7,15 +7,24 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW
-from exactkernel.types import IntArray, Stage
+from exactkernel.types import FloatArray, IntArray, Stage
 from exactmesh.verify.admissible import check_overlap, check_sweep, check_zero_area
 from exactmesh.verify.boundary import Boundary, boundary_of, convex_cycle
+from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
+from exactmesh.verify.domain import Constraints, Domain, constraints_of
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
 from exactmesh.verify.mesh import Mesh, check_finite, check_indices, index_triples, points_of, prepared_mesh
-from exactmesh.verify.properties import Orientation, Property, Verdict, claimed_properties, orientation_of
+from exactmesh.verify.properties import (
+    Orientation,
+    Property,
+    Verdict,
+    asked_properties,
+    claimed_properties,
+    orientation_of,
+)
 from exactmesh.verify.report import Finding, Report
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified, turned
 from exactmesh.verify.witness import IndexArray
@@ -27,28 +36,40 @@ def verify(
     points: npt.ArrayLike,
     triangles: npt.ArrayLike,
     *,
+    segments: npt.ArrayLike | None = None,
+    domain: Domain | None = None,
+    labels: npt.ArrayLike | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str = Orientation.CCW,
 ) -> Report:
     """Decide exactly which properties a set of triangles has; by default, whether it is what ``delaunay``
-    promises.
+    promises, or, with segments or a domain, what ``constrained_delaunay`` does.
 
-    Every property of :class:`Property` is decided and reported, claimed or not, for arrays from anywhere:
-    nothing about the triangles is assumed, nothing is sampled, no tolerance is used.
+    Every property of :class:`Property` that has a meaning for what is given is decided and reported, claimed or not,
+    for arrays from anywhere: nothing about the triangles is assumed, nothing is sampled, no tolerance is used.
 
     Args:
         points: (n, 2), any numeric dtype whose values are doubles; NaN and infinity fail FINITE.
         triangles: (m, 3), any integer dtype; an index out of range fails INDICES.
-        claims: what ``Report.ok`` is about; None claims a Delaunay triangulation of all the points, that is
-            everything but WEAKLY_ACUTE and ACUTE.
+        segments: (s, 2) indices of points: straight lines that should be edges, or chains of edges. None stands for
+            the segments of the domain, if there is one.
+        domain: what should be covered, such as a :class:`exactmesh.PSLG`, in points and indices of its own: they are
+            matched with those of the mesh by position, exactly.
+        labels: (m,) numbers, one a triangle: the attribute of its region.
+        claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
+            everything up to DELAUNAY; with segments, a constrained one
+            (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
+            of the domain (:data:`~exactmesh.verify.DOMAIN_TRIANGULATION`); with labels, REGIONS besides.
         orientation: "ccw", or "any" to take clockwise triangles as well.
 
     Raises:
-        ShapeError: points or triangles have another shape, or the triangles another dtype.
+        ShapeError: an array has another shape or dtype.
         CoordinateError: a coordinate is not exactly a double.
-        ChoiceError: an unknown claim or orientation.
+        NonFiniteError: a coordinate of the domain is not finite.
+        PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
+        ChoiceError: an unknown claim, rule or orientation, or a claim about something that was not given.
 
-    O(n + m) for a Delaunay triangulation; O((n + m) log(n + m)) in general. Reference [Mehlhorn 1999],
+    O(n + m) for a Delaunay triangulation; O((n + m + s) log(n + m + s)) in general. Reference [Mehlhorn 1999],
     [Devillers 1998].
 
     >>> from exactmesh.verify import Property, verify
@@ -61,8 +82,10 @@ def verify(
     >>> report.violations[0].magnitude
     Fraction(96, 1)
     """
-    claimed, chosen = claimed_properties(claims), orientation_of(orientation)
+    asked = asked_properties(segments=segments is not None, domain=domain is not None, labels=labels is not None)
+    claimed, chosen = claimed_properties(claims, asked), orientation_of(orientation)
     doubles, triples = points_of(points), index_triples(triangles)
+    constraints = constraints_of(segments, domain, labels, len(triples))
     findings = {
         Property.FINITE: check_finite(doubles),
         Property.INDICES: check_indices(triples, len(doubles)),
@@ -71,14 +94,14 @@ def verify(
     counts = np.zeros((2, len(Stage)), dtype=np.int64)
     if not failed:
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
-            mesh = prepared_mesh(doubles, triples)
-            findings.update(check_mesh(mesh, chosen))
+            mesh, positions = prepared_mesh(doubles, triples, stacked(constraints.outline))
+            findings.update(check_mesh(mesh, chosen, constraints, positions))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
     undecided = Finding(Verdict.UNDECIDED, because=failed)
     return Report(
-        findings={property_: findings.get(property_, undecided) for property_ in Property},
+        findings={property_: findings.get(property_, undecided) for property_ in asked},
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
@@ -99,8 +122,10 @@ class Tiling:
     cycle: IndexArray | None
 
 
-def check_mesh(mesh: Mesh, orientation: Orientation) -> dict[Property, Finding]:
-    """Decide everything about finite points and valid triangles."""
+def check_mesh(
+    mesh: Mesh, orientation: Orientation, constraints: Constraints, positions: FloatArray
+) -> dict[Property, Finding]:
+    """Decide everything about finite points and valid triangles; ``positions`` are those of the domain."""
     shapes = classified(mesh)
     upright = turned(mesh.triangles, shapes)
     listed = upright if orientation is Orientation.ANY else mesh.triangles
@@ -118,6 +143,10 @@ def check_mesh(mesh: Mesh, orientation: Orientation) -> dict[Property, Finding]:
         Property.ACUTE: check_angles(mesh, shapes, Property.ACUTE),
     }
     findings.update(_against_points(mesh, shapes, tiling, unused))
+    if constraints.any:
+        boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
+        free = unused if links is tiling.links else unused_points(tiling.links)
+        findings.update(check_constraints(mesh, shapes, tiling.links, boundary, free, constraints, positions))
     return findings
 
 

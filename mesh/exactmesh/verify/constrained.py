@@ -1,0 +1,256 @@
+"""What is decided with segments, a domain or labels at hand, in the order in which one thing rests on another."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from exactkernel.types import FloatArray
+from exactmesh.verify.boundary import Boundary, is_one_loop
+from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, ODD, Marks, chained
+from exactmesh.verify.cover import Placed, Survey, check_cover, check_inner_parts, check_outer_parts, surveyed
+from exactmesh.verify.delaunay import check_circles, check_constrained
+from exactmesh.verify.domain import Constraints, Outline, require_even_ends
+from exactmesh.verify.hull import first_at_position
+from exactmesh.verify.links import Links
+from exactmesh.verify.matching import corners_at
+from exactmesh.verify.mesh import Integers, Mesh
+from exactmesh.verify.properties import Kind, Property, Verdict
+from exactmesh.verify.regions import check_labels
+from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.triangles import Shapes, turned
+from exactmesh.verify.witness import IndexArray, finding_of, point_name
+
+__all__ = ["check_constraints", "stacked"]
+
+
+def stacked(outline: Outline | None) -> FloatArray:
+    """Return every position that belongs to a domain: its points, its holes', its regions'."""
+    if outline is None:
+        return np.empty((0, 2))
+    return np.concatenate([outline.points, outline.holes, outline.regions])
+
+
+@dataclass(frozen=True, slots=True)
+class Tiled:
+    """Triangles, what is known about them, and what their edges are marked with.
+
+    Attributes:
+        mesh, shapes, links: as everywhere.
+        boundary: where ADMISSIBLE holds; None otherwise.
+        unused: points that are no corner.
+        marks: (3m,).
+    """
+
+    mesh: Mesh
+    shapes: Shapes
+    links: Links
+    boundary: Boundary | None
+    unused: IndexArray
+    marks: Marks
+
+
+def check_constraints(
+    mesh: Mesh,
+    shapes: Shapes,
+    links: Links,
+    boundary: Boundary | None,
+    unused: IndexArray,
+    constraints: Constraints,
+    positions: FloatArray,
+) -> dict[Property, Finding]:
+    """Decide what rests on segments, the domain and labels.
+
+    Args:
+        mesh, shapes, links: the triangles with area, counterclockwise.
+        boundary: theirs, None unless they are admissible.
+        unused: points that are no corner.
+        constraints: what was given.
+        positions: that of ``stacked`` in the coordinates of the mesh.
+    """
+    tiled = Tiled(mesh, shapes, links, boundary, unused, np.zeros(len(links.slots), dtype=np.uint8))
+    own, outline = constraints.segments, constraints.outline
+    absent = np.empty(0, dtype=np.intp) if own is None else _absent(tiled, own)
+    segments = finding_of(absent, lambda i: _missing(mesh, own, i)) if own is not None else Finding(Verdict.HOLDS)
+    if boundary is None and segments.verdict is Verdict.FAILS:
+        segments = _without_admissible()
+    free = _free(tiled)
+    bits = IN_DOMAIN | ODD | (CONSTRAINED if own is None else 0)
+    findings: dict[Property, Finding] = {}
+    survey = None
+    if outline is not None:
+        placed = _placed(tiled, outline, positions, bits)
+        survey = _survey(tiled, placed, free, bits)
+        findings, theirs = _of_domain(tiled, placed, survey, bits)
+        segments = _both(segments, theirs)
+    elif boundary is not None and free.size:
+        survey = surveyed(mesh, links, tiled.marks, None, free, bits)
+    findings[Property.SEGMENTS_PRESENT] = segments
+    enclosed = free[survey.unused_covered] if survey is not None else free[:0]
+    missing = _missing_properties(boundary, segments)
+    if missing:
+        findings[Property.CONSTRAINED_DELAUNAY] = check_circles(mesh, shapes, missing)
+    else:
+        constrained = tiled.marks & CONSTRAINED > 0
+        findings[Property.CONSTRAINED_DELAUNAY] = check_constrained(mesh, shapes, links, constrained, enclosed)
+    if constraints.labels is not None:
+        findings[Property.REGIONS] = (
+            Finding(Verdict.UNDECIDED, because=missing)
+            if missing
+            else _regions(tiled, constraints.labels, outline, positions)
+        )
+    return findings
+
+
+def _regions(tiled: Tiled, labels: FloatArray, outline: Outline | None, positions: FloatArray) -> Finding:
+    triangles = turned(tiled.mesh.triangles, tiled.shapes)
+    r = 0 if outline is None else len(outline.regions)
+    attributes = np.empty(0) if outline is None else outline.attributes
+    seeds = positions[len(positions) - r :]
+    return check_labels(tiled.mesh, tiled.links, triangles, tiled.marks, labels, seeds, attributes)
+
+
+def _missing_properties(boundary: Boundary | None, segments: Finding) -> tuple[Property, ...]:
+    missing = [Property.ADMISSIBLE] if boundary is None else []
+    if segments.verdict is not Verdict.HOLDS:
+        missing.append(Property.SEGMENTS_PRESENT)
+    return tuple(missing)
+
+
+def _without_admissible() -> Finding:
+    return Finding(Verdict.UNDECIDED, because=(Property.ADMISSIBLE,))
+
+
+def _absent(tiled: Tiled, segments: Integers) -> IndexArray:
+    """Return the segments of the mesh that are no chain; the edges of the others are marked."""
+    n = len(tiled.mesh.points)
+    valid = ((segments >= 0) & (segments < n)).all(axis=1)
+    ends = np.full(segments.shape, -1, dtype=np.intp)
+    ends[valid] = segments[valid]
+    return np.flatnonzero(~chained(tiled.mesh, tiled.links, ends, tiled.marks, CONSTRAINED))
+
+
+def _missing(mesh: Mesh, segments: Integers | None, i: int) -> Violation:
+    assert segments is not None
+    a, b = (int(v) for v in segments[i])
+    if not (0 <= a < len(mesh.points) and 0 <= b < len(mesh.points)):
+        message = f"segment {i} ({a}, {b}) has an index outside 0 .. {len(mesh.points) - 1}"
+        return Violation(Property.SEGMENTS_PRESENT, Kind.OUT_OF_RANGE, (), (a, b), message)
+    name = f"segment {i} from {point_name(mesh.points, a)} to {point_name(mesh.points, b)}"
+    if (mesh.points[a] == mesh.points[b]).all():
+        return Violation(Property.SEGMENTS_PRESENT, Kind.NO_SEGMENT, (), (a, b), f"{name} has no length")
+    message = f"{name} is no chain of edges"
+    return Violation(Property.SEGMENTS_PRESENT, Kind.MISSING_SEGMENT, (), (a, b), message)
+
+
+def _free(tiled: Tiled) -> IndexArray:
+    """Return the unused points that are at no corner's position."""
+    if not tiled.unused.size:
+        return tiled.unused
+    points = tiled.mesh.coordinates
+    return tiled.unused[corners_at(points, _used(tiled.links), points[tiled.unused]) < 0]
+
+
+def _used(links: Links) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    return links.first[1:] > links.first[:-1]
+
+
+def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) -> Placed:
+    n, h = len(outline.points), len(outline.holes)
+    points, holes, regions = positions[:n], positions[n : n + h], positions[n + h :]
+    corner = corners_at(tiled.mesh.coordinates, _used(tiled.links), points)
+    if outline.even_odd:
+        require_even_ends(outline, first_at_position(outline.points))
+    present = chained(tiled.mesh, tiled.links, corner[outline.segments], tiled.marks, bits)
+    marks = tiled.marks if present.all() else tiled.marks.copy()
+    return Placed(outline, points, holes, regions, corner, present, marks)
+
+
+def _survey(tiled: Tiled, placed: Placed, free: IndexArray, bits: int) -> Survey | None:
+    """Sweep the plane where something depends on it."""
+    if tiled.boundary is None:
+        return None
+    simple = placed.outline.even_odd or is_one_loop(tiled.boundary)
+    if simple and not (len(placed.holes) or placed.absent.size or free.size or (placed.corner < 0).any()):
+        return None
+    return surveyed(tiled.mesh, tiled.links, tiled.marks, placed, free, bits)
+
+
+def _of_domain(
+    tiled: Tiled, placed: Placed, survey: Survey | None, bits: int
+) -> tuple[dict[Property, Finding], Finding]:
+    """Decide what is about the domain; return SEGMENTS_PRESENT of the domain's segments besides."""
+    segments, cover = Finding(Verdict.HOLDS), _without_admissible()
+    if tiled.boundary is None:
+        segments = _without_admissible() if placed.absent.size else segments
+    else:
+        if survey is not None and placed.absent.size:
+            segments = check_inner_parts(tiled.mesh, tiled.links, tiled.marks, placed, survey, bits)
+        if segments.verdict is Verdict.HOLDS:
+            cover = _cover(tiled, placed, survey, bits)
+            if survey is not None and placed.absent.size and cover.verdict is Verdict.FAILS:
+                inner = surveyed(tiled.mesh, tiled.links, tiled.marks, placed, tiled.unused[:0], bits, inner=True)
+                segments = check_outer_parts(tiled.marks, placed, inner)
+        else:
+            cover = Finding(Verdict.UNDECIDED, because=(Property.SEGMENTS_PRESENT,))
+    findings = {
+        Property.COVERS_DOMAIN: cover,
+        Property.DOMAIN_POINTS: _domain_points(placed, survey, cover),
+        Property.NO_NEW_POINTS: _new_points(tiled, placed),
+    }
+    return findings, segments
+
+
+def _cover(tiled: Tiled, placed: Placed, survey: Survey | None, bits: int) -> Finding:
+    """COVERS_DOMAIN. A hole's point in the union may lie on a segment there, which only a sweep over those tells."""
+    mesh, links, marks = tiled.mesh, tiled.links, tiled.marks
+    if survey is not None and survey.faces.covered(survey.hole_sides[survey.hole_free]).any():
+        inner = surveyed(mesh, links, marks, placed, tiled.unused[:0], bits, inner=True)
+        survey = replace(survey, hole_free=survey.hole_free & inner.hole_free)
+    return check_cover(mesh, links, marks, placed, survey)
+
+
+def _domain_points(placed: Placed, survey: Survey | None, cover: Finding) -> Finding:
+    """DOMAIN_POINTS: given that the union is the domain, a point belongs to the one if it lies in the other."""
+    if not (placed.corner < 0).any():
+        return Finding(Verdict.HOLDS)
+    if survey is None or cover.verdict is not Verdict.HOLDS:
+        return Finding(Verdict.UNDECIDED, because=(Property.COVERS_DOMAIN,))
+
+    def describe(v: int) -> Violation:
+        message = f"point {point_name(placed.outline.points, v)} of the domain is no corner of any triangle"
+        return Violation(Property.DOMAIN_POINTS, Kind.MISSING_POINT, (), (), message)
+
+    return finding_of(survey.stray[survey.stray_covered], describe)
+
+
+def _new_points(tiled: Tiled, placed: Placed) -> Finding:
+    """NO_NEW_POINTS: of two corners at one position only one is matched, which more than one point would not help."""
+    mesh, used = tiled.mesh, _used(tiled.links)
+    new = used.copy()
+    new[placed.corner[placed.corner >= 0]] = False
+    if new.any():
+        rest = np.flatnonzero(new)
+        every = np.ones(len(placed.coordinates), dtype=np.bool_)
+        new[rest] = corners_at(placed.coordinates, every, mesh.coordinates[rest]) < 0
+
+    def describe(v: int) -> Violation:
+        message = f"corner {point_name(mesh.points, v)} is no point of the domain"
+        return Violation(Property.NO_NEW_POINTS, Kind.NEW_POINT, (), (v,), message)
+
+    return finding_of(np.flatnonzero(new), describe)
+
+
+def _both(one: Finding, other: Finding) -> Finding:
+    """Join two findings about one property: of the mesh's segments and of the domain's."""
+    findings = (one, other)
+    for verdict in (Verdict.FAILS, Verdict.UNDECIDED):
+        parts = [finding for finding in findings if finding.verdict is verdict]
+        if parts:
+            return Finding(
+                verdict,
+                sum(part.count for part in parts),
+                tuple(violation for part in parts for violation in part.violations)[:WITNESSES],
+                any(part.lower_bound for part in parts),
+                tuple(dict.fromkeys(property_ for part in parts for property_ in part.because)),
+            )
+    return one

@@ -1,0 +1,127 @@
+"""REGIONS: labels of triangles against the segments between them and the points of regions."""
+
+import numpy as np
+import numpy.typing as npt
+
+from exactkernel.jit import jit
+from exactkernel.types import FloatArray, IntArray
+from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, Marks
+from exactmesh.verify.faces import Faces, faces_of
+from exactmesh.verify.links import BOUNDARY, Links, ends_of, slot_of, slots_of
+from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.properties import Kind, Property, Verdict
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.witness import finding_of, point_name
+
+__all__ = ["check_labels"]
+
+_CHUNK = 1 << 18  # triangles, or vertices, between two looks at Ctrl-C
+
+
+@jit
+def fill_rows(links: Links, triangles: IntArray, rows: IntArray, t_begin: int, t_end: int) -> None:
+    """Write the row of the triangle of each slot."""
+    for t in range(t_begin, t_end):
+        for i in range(3):
+            v, b = triangles[t, i], triangles[t, (i + 1) % 3]
+            rows[slot_of(links.slots, links.first[v], links.first[v + 1], b)] = t
+
+
+@jit
+def differing(
+    links: Links,
+    marks: Marks,
+    labels: npt.NDArray[np.float64],
+    rows: IntArray,
+    across: IntArray,
+    differ: npt.NDArray[np.bool_],
+    v_begin: int,
+    v_end: int,
+) -> None:
+    """Write the row across each inner edge, at the slot that stands for it, and whether the labels differ there
+    although no segment does."""
+    for v in range(v_begin, v_end):
+        for i in range(links.first[v], links.first[v + 1]):
+            b = links.slots[i] >> 32
+            across[i] = -1
+            differ[i] = False
+            if v < b and links.kinds[i] != BOUNDARY:
+                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+                differ[i] = marks[i] & (CONSTRAINED | IN_DOMAIN) == 0 and labels[rows[i]] != labels[across[i]]
+
+
+def check_labels(
+    mesh: Mesh,
+    links: Links,
+    triangles: IntArray,
+    marks: Marks,
+    labels: npt.NDArray[np.float64],
+    seeds: FloatArray,
+    attributes: FloatArray,
+) -> Finding:
+    """REGIONS, for admissible triangles that contain every segment.
+
+    Args:
+        mesh: the points.
+        links, triangles: counterclockwise triangles, row by row those of the mesh.
+        marks: of their edges.
+        labels: (m,) their labels.
+        seeds: (r, 2) points of regions in the coordinates of the mesh.
+        attributes: (r,) what the labels should be.
+
+    O(m), and O(s log s) for s edges on segments where there are seeds.
+    """
+    rows, across = np.empty((2, len(links.slots)), dtype=np.int32)
+    differ = np.empty(len(links.slots), dtype=np.bool_)
+    for begin in range(0, len(triangles), _CHUNK):
+        fill_rows(links, triangles, rows, begin, min(begin + _CHUNK, len(triangles)))
+    for begin in range(0, len(mesh.points), _CHUNK):
+        differing(links, marks, labels, rows, across, differ, begin, min(begin + _CHUNK, len(mesh.points)))
+    slots = np.flatnonzero(differ)
+
+    def describe(slot: int) -> Violation:
+        v, b, _ = (int(ends[0]) for ends in ends_of(links, np.array([slot])))
+        s, t = int(rows[slot]), int(across[slot])
+        message = (
+            f"triangles {s} and {t} have labels {labels[s]:g} and {labels[t]:g}, but no segment lies between them, "
+            f"on the edge {point_name(mesh.points, v)} - {point_name(mesh.points, b)}"
+        )
+        return Violation(Property.REGIONS, Kind.LABELS_DIFFER, (s, t), (v, b), message)
+
+    finding = finding_of(slots, describe)
+    if finding.verdict is Verdict.FAILS or not len(seeds):
+        return finding
+    segments = np.flatnonzero((marks & (CONSTRAINED | IN_DOMAIN) > 0) & (links.kinds != BOUNDARY))
+    slots = np.concatenate([slots_of(links, BOUNDARY), segments])
+    faces = faces_of(mesh, links, slots, np.zeros(len(slots), dtype=np.bool_), None, seeds)
+    return _seeds(mesh, links, faces, rows, across, labels, attributes)
+
+
+def _seeds(
+    mesh: Mesh,
+    links: Links,
+    faces: Faces,
+    rows: IntArray,
+    across: IntArray,
+    labels: npt.NDArray[np.float64],
+    attributes: FloatArray,
+) -> Finding:
+    """Compare the points of regions with the label of their face, where that is one."""
+    sides, on = faces.answers
+    inside = np.flatnonzero(~on & faces.covered(sides))
+    edges, face = sides[inside] >> 1, faces.plane.face[sides[inside]]
+    slots = faces.plane.source[edges]
+    upwards = ends_of(links, slots)[0] == faces.corner[faces.plane.low[edges]]
+    triangles = np.where(upwards, rows[slots], across[slots])
+    right = labels[triangles] == attributes[inside]
+    culprits = np.flatnonzero(~np.isin(face, face[right]))
+
+    def describe(i: int) -> Violation:
+        seed, t = int(inside[i]), int(triangles[i])
+        corners = tuple(mesh.triangles[t].tolist())
+        message = (
+            f"region {seed} has attribute {attributes[seed]:g}, but triangle {t} in its face has label {labels[t]:g}"
+        )
+        return Violation(Property.REGIONS, Kind.WRONG_LABEL, (t,), corners, message)
+
+    return finding_of(culprits, describe)
