@@ -12,7 +12,7 @@ from exactmesh.chain_distance import is_anything_moved, largest_distances_square
 from exactmesh.chains import Chains, LongArray
 from exactmesh.columns import MarkerArray, frozen
 from exactmesh.noding import Graph, node_by_rounding
-from exactmesh.pslg import PSLG
+from exactmesh.pslg import PSLG, Carve
 from exactmesh.snapping import grid_of, snap
 
 __all__ = ["Arrangement", "Rounding", "arrange"]
@@ -73,6 +73,22 @@ class Arrangement:
         return largest_distances_squared(
             self.pslg.points, begins, ends, Chains(self.chain_start, self.chain_vertices)
         )  # fmt: skip
+
+    @cached_property
+    def domain(self) -> PSLG:
+        """The domain of the planar PSLG, for :func:`exactmesh.verify`.
+
+        The PSLG itself, but for the even-odd rule: that counts coincident segments of the input, so those that are an
+        even number come twice here, on points of their own at the same positions.
+        """
+        if self.pslg.rule is Carve.SEEDS:
+            return self.pslg
+        many = np.bincount(self.incidence[:, 0], minlength=len(self.pslg.segments))
+        again = self.pslg.segments[many % 2 == 0]
+        points = np.concatenate([self.pslg.points, self.pslg.points[again.reshape(-1)]])
+        copies = np.arange(len(self.pslg.points), len(points), dtype=np.int32).reshape(-1, 2)
+        segments = np.concatenate([self.pslg.segments, copies])
+        return PSLG(points, segments, holes=self.pslg.holes, regions=self.pslg.regions, rule=self.pslg.rule)
 
     def __repr__(self) -> str:
         return (

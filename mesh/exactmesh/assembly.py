@@ -38,6 +38,13 @@ class Task(NamedTuple):
     arrangement: Arrangement | None
     rule: Carve | None
 
+    @property
+    def domain(self) -> PSLG | None:
+        """What the triangles are to cover; None is the convex hull."""
+        if self.rule is None or self.arrangement is None:
+            return None if self.rule is None else self.graph
+        return self.arrangement.domain
+
 
 class Constrained(NamedTuple):
     """Constrained edges, in the order of the segments they are part of, and along each.
@@ -176,6 +183,7 @@ def assembled(task: Task, built: Insertion, edges: Constrained, cut: Cut) -> Tri
         work=work_of(built.k, built.flips),
         pslg=source,
         arrangement=task.arrangement,
+        domain=task.domain,
         segments=segments,
         segment_markers=markers_along(source, incidence, cut.sides[inside] == 1),
         segment_incidence=incidence[np.lexsort(incidence.T[::-1])],

@@ -218,6 +218,7 @@ def constrained_delaunay(
     if not isinstance(pslg, PSLG):
         raise ShapeError(f"expected a PSLG, not a {type(pslg).__name__}: make one with PSLG(points, segments)")
     rule = (pslg.rule if carve else None) if isinstance(carve, bool) else Carve(carve)
+    pslg = pslg if rule in (None, pslg.rule) else pslg.with_rule(rule)
     treatment = Crossings(crossings)
     if rule is Carve.EVEN_ODD:
         check_parity(pslg)

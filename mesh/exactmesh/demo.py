@@ -124,11 +124,10 @@ def _run(given: FloatArray | PSLG) -> _Run:
     start = time.perf_counter()
     if isinstance(given, PSLG):
         triangulation = constrained_delaunay(given, crossings="split")
-        domain = given if triangulation.arrangement is None else triangulation.arrangement.pslg
     else:
-        triangulation, domain = delaunay(given), None
+        triangulation = delaunay(given)
     middle = time.perf_counter()
-    report = verify(triangulation.points, triangulation.triangles, domain=domain)
+    report = verify(triangulation.points, triangulation.triangles, domain=triangulation.domain)
     return _Run(triangulation, report, (middle - start, time.perf_counter() - middle))
 
 

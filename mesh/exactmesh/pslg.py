@@ -250,6 +250,17 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         for name, value in content.items():
             object.__setattr__(self, name, frozen(value) if isinstance(value, np.ndarray) else value)
 
+    def with_rule(self, rule: Carve | str) -> "PSLG":
+        """Return the same graph with another rule for its domain. O(1).
+
+        >>> from exactmesh import PSLG
+        >>> PSLG([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)]).with_rule("even-odd")
+        PSLG(3 points, 3 segments, 0 holes, 0 regions, carve by even-odd)
+        """
+        other = object.__new__(PSLG)
+        other.__setstate__({**{f.name: getattr(self, f.name) for f in fields(self)}, "rule": Carve(rule)})
+        return other
+
     def __repr__(self) -> str:
         named = ((len(getattr(self, name)), name) for name in ("points", "segments", "holes", "regions"))
         counts = ", ".join(f"{k} {name[:-1] if k == 1 else name}" for k, name in named)

@@ -77,6 +77,7 @@ class Triangulation:
         work: what it took to build it.
         pslg: the graph that was triangulated, or None.
         arrangement: how its crossings became vertices, or None where there was no need.
+        domain: what the triangles cover, for :func:`exactmesh.verify`; None is the convex hull.
         segments: int32 (s, 2), the constrained edges; without vertices inside of them, row i is segment i of the graph.
         segment_markers: int64 (s,), see :mod:`exactmesh.markers`.
         segment_incidence: int32 (k, 2), sorted rows (constrained edge, segment of the graph): a segment with vertices
@@ -103,6 +104,7 @@ class Triangulation:
     work: Work
     pslg: PSLG | None = None
     arrangement: Arrangement | None = None
+    domain: PSLG | None = None
     segments: IntArray = field(default_factory=_no_pairs)
     segment_markers: MarkerArray = field(default_factory=_no_markers)
     segment_incidence: IntArray = field(default_factory=_no_pairs)
