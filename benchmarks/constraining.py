@@ -87,7 +87,11 @@ def _geos(polygons: Any) -> int:
 
 CONSTRAINERS: dict[str, Mesher] = {
     "exactmesh-constrained": Mesher(
-        "exactmesh", "exactmesh", _compiled, _exactmesh, 'constrained_delaunay(PSLG(points, segments), crossings="split")'
+        "exactmesh",
+        "exactmesh",
+        _compiled,
+        _exactmesh,
+        'constrained_delaunay(PSLG(points, segments), crossings="split")',
     ),
     "triangle-constrained": Mesher("Triangle", "triangle", _same, _triangle, "triangulate(graph, 'p'), 'pc' if open"),
     "cdt-constrained": Mesher(
