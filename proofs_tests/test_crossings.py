@@ -12,10 +12,11 @@ from proofs_tests.crossing_strategies import Drawing, bundle, drawings, near_bun
 from proofs_tests.oracles import RationalPoint, rationals
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG
+from exactmesh import PSLG, memory
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.crossing_points import CrossingRounder
 from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
+from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
 from exactmesh.noding import Graph
 from exactmesh.snapping import grid_of, snap
 
@@ -268,9 +269,75 @@ class TestSnapping:
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
-        assert oracle.segment_meets_pixel(slanted, (5, 0), (1.0, 1.0)) is False
+        assert oracle.segment_meets_pixel(slanted, (5, 0), (1.0, 1.0))
+        assert not oracle.segment_meets_pixel(slanted, (4, 1), (1.0, 1.0))
         assert oracle.segment_meets_pixel(slanted, (5, 1), (1.0, 1.0))
         touching = ((Fraction(-1), Fraction(0)), (Fraction(0), Fraction(-1)))  # the lower left corner of cell (0, 0)
         assert oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
         touching = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))  # its upper right corner
         assert not oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
+
+
+@pytest.mark.obligation("ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost")
+class TestBoundary:
+    """Faults are named; what would fill the machine is refused; markers, attributes, holes and regions come along."""
+
+    def test_indices_that_do_not_exist(self) -> None:
+        with pytest.raises(TopologyError, match=r"segments\[1\]") as caught:
+            find_crossings([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 3)])
+        assert caught.value.indices == (1,)
+
+    def test_segments_without_length(self) -> None:
+        with pytest.raises(DegenerateError, match="segment 1 begins and ends") as caught:
+            find_crossings([(0, 0), (1, 0), (1, -0.0)], [(0, 1), (1, 2)])
+        assert caught.value.indices == (1,)
+
+    def test_shapes_and_numbers(self) -> None:
+        with pytest.raises(ShapeError):
+            find_crossings([(0, 0), (1, 0)], [(0, 1, 2)])
+        with pytest.raises(NonFiniteError):
+            find_crossings([(0, 0), (1, np.nan)], [(0, 1)])
+        assert len(find_crossings([], [])) == 0
+        assert len(find_crossings([(0, 0), (1, 0)], [])) == 0
+
+    def test_more_than_fits_into_memory(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(memory, "_available", lambda: 1000)
+        points, segments = bundle(26)
+        with pytest.raises(TooManyCrossingsError, match="pairs of segments meet") as caught:
+            find_crossings(
+                np.concatenate([points + i * 1e-3 for i in range(4)]),
+                [(a + i * len(points), b + i * len(points)) for i in range(4) for a, b in segments],
+            )
+        assert len(caught.value.indices) == 2
+
+    def test_what_comes_along(self) -> None:
+        square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+        pslg = PSLG(
+            [*square, (0, 2), (4, 2), (2, 0), (2, 4)],
+            [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)],
+            holes=[(1, 1)],
+            regions=[(3, 3, 7.0, 0.5)],
+            point_markers=range(8),
+            segment_markers=[1, 2, 3, 4, 5, 6],
+            point_attributes=[[float(x), 1.0] for x, _ in [*square, (0, 2), (4, 2), (2, 0), (2, 4)]],
+            rule="even-odd",
+        )
+        arranged = arrange(pslg)
+        noded = arranged.pslg
+        assert faults(arranged) == []
+        assert noded.points[8:].tolist() == [[2.0, 2.0]]
+        assert noded.point_markers is not None
+        assert noded.point_markers.tolist() == [*range(8), 0]
+        assert noded.point_attributes is not None
+        assert noded.point_attributes[8:].tolist() == [[2.0, 1.0]]
+        assert noded.segment_markers is not None
+        assert noded.segment_markers.tolist() == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
+        assert (noded.holes.tolist(), noded.regions.tolist(), noded.rule) == ([[1, 1]], [[3, 3, 7, 0.5]], pslg.rule)
+        assert [arranged.chain(i).tolist() for i in (0, 4, 5)] == [[0, 6, 1], [4, 8, 5], [6, 8, 7]]
+        assert (arranged.rounding, arranged.crossings, arranged.grid) == (Rounding.EXACT, 1, (0.0, 0.0))
+
+    def test_overlapping_segments_become_one(self) -> None:
+        arranged = arrange(PSLG([(0, 0), (3, 0), (1, 0), (2, 0), (1, 0)], [(0, 1), (3, 2), (0, 4)]))
+        assert arranged.pslg.segments.tolist() == [[0, 2], [2, 3], [3, 1]]
+        assert arranged.incidence.tolist() == [[0, 0], [0, 2], [1, 0], [1, 1], [2, 0]]
+        assert arranged.chain(1).tolist() == [3, 2]

@@ -9,6 +9,7 @@
 from exactkernel.types import Sign, Stage
 from exactmesh.builder import TriangulationBuilder
 from exactmesh.constrain import Crossings, constrained_delaunay
+from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, arrange, find_crossings
 from exactmesh.delaunay import delaunay
 from exactmesh.errors import (
     ChoiceError,
@@ -28,6 +29,7 @@ from exactmesh.errors import (
     SeedError,
     ShapeError,
     TooFewPointsError,
+    TooManyCrossingsError,
     TooManyPointsError,
     TopologyError,
 )
@@ -42,6 +44,7 @@ from exactmesh.verify import Orientation, Property, Report, Verdict, Verificatio
 __all__ = [
     "OUTSIDE",
     "PSLG",
+    "Arrangement",
     "Carve",
     "ChoiceError",
     "CollinearPointsError",
@@ -59,6 +62,7 @@ __all__ = [
     "FileFormatError",
     "GeometryError",
     "InadmissibleError",
+    "Meeting",
     "NonFiniteError",
     "Orientation",
     "PSLGError",
@@ -67,12 +71,15 @@ __all__ = [
     "QuadEdge",
     "QuarterEdge",
     "Report",
+    "Rounding",
     "SeedError",
+    "SegmentPairs",
     "ShapeError",
     "Sign",
     "Stage",
     "Statistics",
     "TooFewPointsError",
+    "TooManyCrossingsError",
     "TooManyPointsError",
     "TopologyError",
     "Triangulation",
@@ -82,8 +89,10 @@ __all__ = [
     "Vertex",
     "Violation",
     "Work",
+    "arrange",
     "constrained_delaunay",
     "delaunay",
+    "find_crossings",
     "flip",
     "is_flippable",
     "is_locally_delaunay",

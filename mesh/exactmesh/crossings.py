@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
-from exactkernel.errors import DegenerateError, ShapeError
+from exactkernel.errors import DegenerateError
 from exactmesh.arrangement import Arrangement, Rounding, arrange
 from exactmesh.chains import distinct
 from exactmesh.coincident import first_of_each, lexicographic_order
@@ -69,8 +69,7 @@ def find_crossings(points: npt.ArrayLike, segments: npt.ArrayLike) -> SegmentPai
     coordinates = finite_points(points)
     given = np.asarray(segments)
     rows = indices_of(given.reshape(-1, 2) if given.size == 0 else given, "segments", 2, 0, len(coordinates))
-    if rows is None:
-        raise ShapeError("segments is None; expected (s, 2)")
+    assert rows is not None  # an array came in
     ends = first_of_each(coordinates, lexicographic_order(coordinates))[rows]
     flat = np.flatnonzero(ends[:, 0] == ends[:, 1])
     if flat.size:

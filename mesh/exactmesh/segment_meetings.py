@@ -41,7 +41,7 @@ _CROSSING, _TOUCH, _OVERLAP, _NONE = 0, 1, 2, -1
 _MANY = 1 << 14  # segments that fill a cache
 #: A zero bit before each of the eight bits of the index.
 _SPREAD = np.array([sum((i >> bit & 1) << 2 * bit for bit in range(8)) for i in range(256)], dtype=np.int64)
-_BUDGET = 1 << 24  # pairs tested between two looks at Ctrl-C
+_BUDGET = 1 << 21  # pairs tested between two looks at Ctrl-C
 _LEAST_ROOM = 1 << 16  # of a portion
 _SHARED_LEAF = 4 * LEAF  # in larger leaves the pairs with a common end are not even looked at
 
