@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import combinations, pairwise
 
 from proofs_tests import oracles
-from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.oracles import RationalPoint
 
 __all__ = ["Cells", "Line", "cross_inside", "is_chain", "is_visible", "meeting_points", "parts_of"]
 
@@ -147,8 +147,8 @@ class Cells:
         low = a if c is None else c if a is None else max(a, c)
         high = b if d is None else d if b is None else min(b, d)
         ends = [p[1] for line in self.blocking for p in line if p[0] == s.right]
-        bottom = min([0, *ends, *(y for y in (a, b, c, d) if y is not None)]) - Fraction(2)
-        top = max([0, *ends, *(y for y in (a, b, c, d) if y is not None)]) + Fraction(2)
+        heights = [Fraction(0), *ends, *(y for y in (a, b, c, d) if y is not None)]
+        bottom, top = min(heights) - 2, max(heights) + 2
         low, high = bottom if low is None else low, top if high is None else high
         if low >= high:
             return False
@@ -166,11 +166,7 @@ class Cells:
     def domain(self, holes: Sequence[RationalPoint], even_odd: bool) -> list[bool]:
         """Whether each trapezoid belongs to the domain."""
         outside = {
-            self.face[i]
-            for h in holes
-            if not self._blocked(h)
-            for i, t in enumerate(self.trapezoids)
-            if t.contains(h)
+            self.face[i] for h in holes if not self._blocked(h) for i, t in enumerate(self.trapezoids) if t.contains(h)
         }
         if even_odd:
             return [t.parity == 1 and f not in outside for t, f in zip(self.trapezoids, self.face, strict=True)]
@@ -203,8 +199,7 @@ def _directions(p: RationalPoint, ends: Iterable[RationalPoint]) -> Iterator[Rat
     for d in seen:  # insertion by angle
         i = 0
         while i < len(ordered) and (
-            half(ordered[i]) < half(d)
-            or (half(ordered[i]) == half(d) and oracles.orient(zero, ordered[i], d) > 0)
+            half(ordered[i]) < half(d) or (half(ordered[i]) == half(d) and oracles.orient(zero, ordered[i], d) > 0)
         ):
             i += 1
         ordered.insert(i, d)

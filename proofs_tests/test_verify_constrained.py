@@ -1,9 +1,8 @@
 """V1 and V2 for constrained meshes: with segments, with domains, every verdict is that of brute force."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from fractions import Fraction
-from itertools import combinations
+from dataclasses import dataclass
+from itertools import combinations, pairwise
 from random import Random
 
 import numpy as np
@@ -12,29 +11,21 @@ from proofs_tests import domain_oracle, oracles
 from proofs_tests.domain_oracle import Cells, Line
 from proofs_tests.oracles import RationalPoint, Triangle
 
-from exactmesh import PSLG
-from exactmesh.verify import Property, Report, Verdict, verify
+from exactkernel.types import FloatArray, IntArray
+from exactmesh.verify import Property, Verdict, verify
 
 Points = Sequence[tuple[float, float]]
 Pair = tuple[int, int]
-
-NEW = (
-    Property.SEGMENTS_PRESENT,
-    Property.CONSTRAINED_DELAUNAY,
-    Property.COVERS_DOMAIN,
-    Property.DOMAIN_POINTS,
-    Property.NO_NEW_POINTS,
-)
 
 
 @dataclass(frozen=True)
 class Plain:
     """A domain that nobody has validated: what the protocol asks for."""
 
-    points: np.ndarray
-    segments: np.ndarray
-    holes: np.ndarray
-    regions: np.ndarray
+    points: FloatArray
+    segments: IntArray
+    holes: FloatArray
+    regions: FloatArray
     rule: str
 
     @classmethod
@@ -73,6 +64,10 @@ class Truth:
         self.meetings: dict[tuple[Triangle, Triangle], bool] = {}
         self.visible: dict[tuple[object, ...], bool] = {}
 
+    def _line(self, edge: frozenset[int]) -> Line:
+        a, b = edge
+        return self.points[a], self.points[b]
+
     def _within(self, p: RationalPoint, t: Triangle) -> bool:
         a, b, c = (self.points[v] for v in t)
         signs = [oracles.orient(a, b, p), oracles.orient(b, c, p), oracles.orient(c, a, p)]
@@ -98,7 +93,7 @@ class Truth:
         corners = {self.points[v] for t in triangles for v in t}
         if all(self._whole(s, edges) for s in self.lines):
             return True
-        drawn = [tuple(self.points[v] for v in edge) for edge in edges]
+        drawn = [self._line(edge) for edge in edges]
         for s, t in combinations(self.lines, 2):
             crossing = domain_oracle.cross_inside(s, t)
             if crossing is not None and crossing not in corners and crossing not in {p for s in self.lines for p in s}:
@@ -121,7 +116,7 @@ class Truth:
         drawn: Sequence[Line],
     ) -> bool:
         along = [e for e in drawn if all(oracles.on_segment(v, *s) for v in e)]
-        middles = [domain_oracle.middle(p, q) for p, q in zip(ends, ends[1:], strict=False)]
+        middles = [domain_oracle.middle(p, q) for p, q in pairwise(ends)]
         for p in [*ends, *middles]:
             needed = self.in_closed_domain(p) or any(self._within(p, t) for t in triangles)
             if needed and p not in corners and not any(oracles.on_segment(p, *e) for e in along):
@@ -130,9 +125,7 @@ class Truth:
 
     def constrained_delaunay(self, triangles: Sequence[Triangle]) -> bool:
         edges = [frozenset(pair) for t in triangles for pair in combinations(t, 2)]
-        blockers = tuple(
-            [*self.lines, *(tuple(self.points[v] for v in edge) for edge in edges if edges.count(edge) == 1)]
-        )
+        blockers = (*self.lines, *(self._line(edge) for edge in edges if edges.count(edge) == 1))
         for t in triangles:
             corners = [self.points[v] for v in oracles.counterclockwise(self.points, t)]
             centre, radius = oracles.circumcircle(*corners)
@@ -148,9 +141,8 @@ class Truth:
         return self.visible[key]
 
     def covers(self, triangles: Sequence[Triangle]) -> bool:
-        return [any(column) for column in zip(*(self.cover[tuple(sorted(t))] for t in triangles), strict=True)] == (
-            self.inside
-        ) if triangles else not any(self.inside)
+        columns = [self.cover[t] for t in triangles]
+        return [any(column[i] for column in columns) for i in range(len(self.inside))] == self.inside
 
     def verdicts(self, triangles: Sequence[Triangle]) -> dict[Property, bool]:
         admissible = self.admissible(triangles)
@@ -177,8 +169,8 @@ ALLOWED = {
 
 def disagreements(truth: Truth, triangles: Sequence[Triangle]) -> list[str]:
     """Where the verifier contradicts brute force, or is undecided without the reason that the enum states."""
-    own = {"segments": list(truth.pairs)} if truth.domain is None else {"domain": truth.domain}
-    report = verify(truth.given, list(triangles), orientation="any", **own)
+    segments = list(truth.pairs) if truth.domain is None else None
+    report = verify(truth.given, list(triangles), segments=segments, domain=truth.domain, orientation="any")
     faults = []
     for property_, true in truth.verdicts(triangles).items():
         finding = report.findings[property_]
@@ -203,3 +195,189 @@ def all_sets(points: Points) -> Iterator[tuple[Triangle, ...]]:
     triples = [t for t in combinations(range(len(points)), 3) if oracles.has_area(exact, t)]
     for bits in range(1 << len(triples)):
         yield tuple(t for i, t in enumerate(triples) if bits >> i & 1)
+
+
+SQUARE: Points = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)]
+RIM = [(0, 1), (1, 2), (2, 3), (3, 0)]
+
+#: Points and segments of the mesh.
+WITH_SEGMENTS: dict[str, tuple[Points, list[Pair]]] = {
+    "a diagonal": ([(0, 0), (4, 0), (4, 4), (0, 4), (1, 2)], [(0, 2)]),
+    "through a vertex": (SQUARE, [(0, 2), (1, 3)]),
+    "convex": ([(0, 0), (4, -1), (6, 3), (3, 6), (-1, 4)], [(0, 2)]),
+    "inside": ([(0, 0), (9, 0), (4, 9), (4, 2), (5, 4)], [(3, 4), (0, 3)]),
+    "grid without a corner": ([(0, 0), (1, 0), (2, 0), (0, 1), (1, 1)], [(2, 0), (0, 4)]),
+    "two at one position": ([(0, 0), (3, 0), (0, 3), (3, 3), (3, 0)], [(0, 3), (1, 4)]),
+    "no segment": ([(0, 0), (4, 0), (4, 4), (0, 4), (3, 2)], []),
+}
+
+Case = tuple[Points, Points, list[Pair], Points, str]
+#: Points of the mesh, then the domain.
+DOMAINS: dict[str, Case] = {
+    "a square and a point": (SQUARE, SQUARE, RIM, (), "seeds"),
+    "a point that nobody asked for": (SQUARE, SQUARE[:4], RIM, (), "seeds"),
+    "not convex": (SQUARE, SQUARE, [(0, 1), (1, 2), (2, 4), (4, 0)], (), "even-odd"),
+    "two triangles": (
+        [(0, 0), (4, -1), (6, 3), (3, 6), (-1, 4)],
+        [(0, 0), (4, -1), (6, 3), (3, 6), (-1, 4)],
+        [(0, 1), (1, 2), (2, 0), (2, 3), (3, 0)],
+        (),
+        "seeds",
+    ),
+    "pinched": (SQUARE, SQUARE, [(0, 4), (4, 1), (1, 0), (2, 4), (4, 3), (3, 2)], (), "even-odd"),
+    "one of four carved": (SQUARE, SQUARE, [*RIM, (0, 2), (1, 3)], [(1, 0.5)], "seeds"),
+    "two of four carved": (SQUARE, SQUARE, [*RIM, (0, 2), (1, 3)], [(1, 0.5), (1.5, 1)], "seeds"),
+    "opposite ones carved": (SQUARE, SQUARE, [*RIM, (0, 2), (1, 3)], [(1, 0.5), (1, 1.5)], "seeds"),
+    "a T-junction": (
+        [(0, 0), (4, 0), (2, 3), (2, 1), (2, 0)],
+        [(0, 0), (4, 0), (2, 3), (2, 1), (2, 0)],
+        [(0, 4), (0, 1), (1, 2), (2, 0), (2, 3)],
+        (),
+        "seeds",
+    ),
+    "all carved": (SQUARE, SQUARE, [*RIM, (0, 4)], [(0.5, 1)], "seeds"),
+    "doubled": (SQUARE, [*SQUARE, (0, 0), (2, 2)], [*RIM, (0, 2), (5, 6)], (), "even-odd"),
+    "overlapping": (SQUARE, [*SQUARE, (1, 0)], [(0, 1), (5, 1), (0, 5), (1, 2), (2, 3), (3, 0)], (), "seeds"),
+    "open": (SQUARE, SQUARE, RIM[:3], (), "seeds"),
+    "hole and parity": (SQUARE, SQUARE, [*RIM, (0, 4), (4, 2), (0, 2)], [(0.5, 1)], "even-odd"),
+}
+
+
+def truth_of(case: Case) -> Truth:
+    points, theirs, segments, holes, rule = case
+    return Truth(points, (), Plain.of(theirs, segments, holes, rule))
+
+
+@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+class TestEverySet:
+    """For every set of triangles over five points each decided verdict about segments and domains is that of brute
+    force: visibility, chains and faces by definition. Undecided is only what the enum says."""
+
+    @pytest.mark.parametrize(("points", "segments"), WITH_SEGMENTS.values(), ids=WITH_SEGMENTS.keys())
+    def test_segments(self, points: Points, segments: list[Pair]) -> None:
+        truth = Truth(points, segments)
+        for triangles in list(all_sets(points))[::2]:
+            assert not disagreements(truth, triangles), triangles
+
+    @pytest.mark.parametrize("case", DOMAINS.values(), ids=DOMAINS.keys())
+    def test_domain(self, case: Case) -> None:
+        truth = truth_of(case)
+        for triangles in list(all_sets(case[0]))[::2]:
+            assert not disagreements(truth, triangles), triangles
+
+    def test_control_brute_force_accepts_and_rejects_each_property(self) -> None:
+        seen: dict[Property, set[bool]] = {}
+        for case in DOMAINS.values():
+            truth = truth_of(case)
+            for triangles in list(all_sets(case[0]))[::5]:
+                if truth.admissible(triangles):
+                    for property_, true in truth.verdicts(triangles).items():
+                        seen.setdefault(property_, set()).add(true)
+        assert len(seen) == 5
+        assert all(truths == {True, False} for truths in seen.values())
+
+
+def random_truth(random: Random) -> Truth:
+    """A random domain over few positions: rings or single segments, overlapping, crossing, with T-junctions and
+    duplicate points; or a few segments of the mesh."""
+    size, n = random.choice((3, 4, 5)), random.choice((5, 6))
+    points = [(random.randrange(size), random.randrange(size)) for _ in range(n)]
+    if random.random() < 0.25:
+        return Truth(points, [(a, b) for a, b in (random.sample(range(n), 2) for _ in range(random.randrange(4)))])
+    theirs = list(points) if random.random() < 0.3 else list(dict.fromkeys(points))
+    random.shuffle(theirs)
+    rule = random.choice(("seeds", "even-odd"))
+    segments: list[Pair] = []
+    for _ in range(random.choice((1, 1, 2, 3))):
+        ring = random.sample(range(len(theirs)), min(len(theirs), random.randrange(3, 7)))
+        if rule == "seeds" and random.random() < 0.4:
+            ring = ring[:2]
+        segments += zip(ring, ring[1:] + ring[:1], strict=True)
+    segments = [(a, b) for a, b in segments if theirs[a] != theirs[b]]
+    holes = [(random.randrange(4 * size) / 4, random.randrange(4 * size) / 4) for _ in range(random.choice((0, 1, 2)))]
+    return Truth(points, (), Plain.of(theirs, segments, holes, rule))
+
+
+def grown(truth: Truth, random: Random) -> list[Triangle]:
+    """Triangles that mostly meet admissibly, and often lie in the domain only."""
+    candidates = [t for t in combinations(range(len(truth.points)), 3) if oracles.has_area(truth.points, t)]
+    random.shuffle(candidates)
+    chosen: list[Triangle] = []
+    careless = random.choice((0, 0, 0.02))
+    for t in candidates:
+        if all(truth.meet(s, t) for s in chosen) or random.random() < careless:
+            chosen.append(t)
+    if truth.domain is not None and random.random() < 0.7:
+        chosen = [t for t in chosen if all(i for i, c in zip(truth.inside, truth.cover[t], strict=True) if c)]
+    return chosen if random.random() < 0.7 else chosen[1:]
+
+
+@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+class TestRandomDomains:
+    """The same for random domains over points of a small grid, where everything coincides with everything."""
+
+    @pytest.mark.parametrize("seed", range(60))
+    def test_verdicts(self, seed: int) -> None:
+        random = Random(seed)
+        truth = random_truth(random)
+        for _ in range(4):
+            triangles = grown(truth, random)
+            assert not disagreements(truth, triangles), (truth.given, truth.pairs, truth.domain, triangles)
+
+
+#: Points, triangles, domain; most were found by fuzzing.
+REGRESSIONS: list[tuple[Points, list[Triangle], Plain]] = [
+    (  # a segment that ends inside an edge of the boundary, from within
+        [(3, 1), (3, 0), (3, 2), (2, 0), (0, 0)],
+        [(1, 2, 4)],
+        Plain.of([(3, 1), (0, 0), (3, 0), (2, 0), (3, 2)], [(0, 1)], [(2, 1)]),
+    ),
+    (  # a hole's point on an edge that is no segment
+        [(0, 0), (4, 0), (2, 3), (2, 1), (2, 0)],
+        [(0, 3, 4)],
+        Plain.of([(0, 0), (4, 0), (2, 3), (2, 1), (2, 0)], [(0, 4), (4, 1), (1, 2), (2, 0), (2, 3)], [(2, 0.5)]),
+    ),
+    (  # absent segments on top of present ones: parity counted twice
+        [(2, 0), (3, 3), (0, 0), (2, 2), (1, 0)],
+        [(0, 1, 4)],
+        Plain.of(
+            [(3, 3), (2, 2), (1, 0), (2, 0), (0, 0)],
+            [(3, 0), (0, 1), (1, 2), (2, 4), (4, 3)],
+            [(1.25, 1.25)],
+            "even-odd",
+        ),
+    ),
+    (  # present ones within the triangles below absent ones: parity not counted
+        [(2, 2), (1, 1), (1, 2), (1, 0), (1, 0), (0, 2)],
+        [(1, 4, 5), (0, 1, 4)],
+        Plain.of(
+            [(0, 2), (1, 2), (2, 2), (1, 1), (1, 0), (1, 0)],
+            [(5, 3), (3, 2), (2, 0), (0, 4), (4, 1), (1, 5), (0, 2), (2, 5), (4, 1), (1, 3), (3, 0)],
+            [(1, 0.25)],
+            "even-odd",
+        ),
+    ),
+    (  # a hole that has no point
+        [(0, 0), (8, 0), (0, 8), (1, 1), (3, 1), (1, 3)],
+        [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5)],
+        Plain.of([(0, 0), (8, 0), (0, 8), (1, 1), (3, 1), (1, 3)], [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3)]),
+    ),
+    (  # absent segments that cross in an end of a third one
+        [(1, 1), (2, 1), (1, 2), (1, 0), (0, 1)],
+        [],
+        Plain.of(
+            [(2, 1), (0, 1), (1, 0), (1, 1), (1, 2)],
+            [(3, 4), (4, 1), (1, 0), (0, 2), (2, 3), (2, 4), (4, 1), (1, 0), (0, 2)],
+            [],
+            "even-odd",
+        ),
+    ),
+]
+
+
+class TestRegressions:
+    """What the checker once got wrong, or might."""
+
+    @pytest.mark.parametrize(("points", "triangles", "domain"), REGRESSIONS)
+    def test_verdicts(self, points: Points, triangles: list[Triangle], domain: Plain) -> None:
+        assert not disagreements(Truth(points, (), domain), triangles)

@@ -141,7 +141,9 @@ class TestCorruptedMeshes:
         points, triangles = sound(seed)
         report = verify(points, triangles)
         assert report.ok, report
-        assert [property_ for property_ in Property if report.verdict(property_) is not Verdict.HOLDS] == [
+        assert [
+            property_ for property_, finding in report.findings.items() if finding.verdict is not Verdict.HOLDS
+        ] == [
             Property.WEAKLY_ACUTE,
             Property.ACUTE,
         ]

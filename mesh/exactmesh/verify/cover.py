@@ -145,9 +145,13 @@ def check_inner_parts(mesh: Mesh, links: Links, marks: Marks, placed: Placed, su
     odd = plane.odd[parts] > 0
     found = np.empty(len(parts), dtype=np.bool_)
     for toggled in (False, True):
-        found[odd == toggled] = chained(mesh, links, ends[odd == toggled], marks, (bits & ~ODD) | (ODD if toggled else 0))
+        found[odd == toggled] = chained(
+            mesh, links, ends[odd == toggled], marks, (bits & ~ODD) | (ODD if toggled else 0)
+        )
     missing = np.unique(absent[plane.source[parts[~found]]])
-    return finding_of(missing, lambda i: _missing(placed, i, "is no chain of edges where it runs through the triangles"))
+    return finding_of(
+        missing, lambda i: _missing(placed, i, "is no chain of edges where it runs through the triangles")
+    )
 
 
 def check_outer_parts(marks: Marks, placed: Placed, survey: Survey) -> Finding:
@@ -294,17 +298,19 @@ def _even_boundary(mesh: Mesh, links: Links, slot: int) -> Violation:
 
 
 def _covered_hole(placed: Placed, i: int) -> Violation:
-    return _violation(Kind.COVERED_HOLE, (), f"the hole's point {point_name(placed.outline.holes, i)} lies in a triangle")
+    return _violation(
+        Kind.COVERED_HOLE, (), f"the hole's point {point_name(placed.outline.holes, i)} lies in a triangle"
+    )
 
 
 def _bare_face(mesh: Mesh, placed: Placed, faces: Faces, side: int) -> Violation:
     e = side >> 1
     where = "above" if side & 1 else "below"
     if faces.plane.sort[e] == LOOSE:
-        name, ends = placed.name(int(placed.absent[faces.plane.source[e]])), ()
+        name = placed.name(int(placed.absent[faces.plane.source[e]]))
     else:
-        name, ends = _edge(mesh, faces, e), _corners(faces, e)
-    return _violation(Kind.NOT_COVERED, ends, f"no triangle covers the face of the domain {where} {name}")
+        name = _edge(mesh, faces, e)
+    return _violation(Kind.NOT_COVERED, _corners(faces, e), f"no triangle covers the face of the domain {where} {name}")
 
 
 def _covered_outside(mesh: Mesh, faces: Faces, side: int) -> Violation:

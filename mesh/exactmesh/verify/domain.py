@@ -20,27 +20,28 @@ _RULES = ("seeds", _EVEN_ODD)
 
 
 class Domain(Protocol):
-    """A planar straight line graph and the rule by which its faces are the domain; :class:`exactmesh.PSLG` is one.
-
-    Attributes:
-        points: float64 (n, 2); several may share a position.
-        segments: int (s, 2), the indices of their ends. They may overlap and meet in T-junctions.
-        holes: float64 (h, 2), a point inside each hole.
-        regions: float64 (r, 3 or more): x, y of a point inside a region, its attribute, and what else there is.
-        rule: "seeds": the faces of the segments that reach neither infinity nor a hole's point; "even-odd": those that
-            an odd number of segments (coincident ones counted) separates from infinity and that reach no hole's point.
-    """
+    """A planar straight line graph and the rule by which its faces are the domain; :class:`exactmesh.PSLG` is one."""
 
     @property
-    def points(self) -> FloatArray: ...
+    def points(self) -> FloatArray:
+        """float64 (n, 2); several may share a position."""
+
     @property
-    def segments(self) -> IntArray: ...
+    def segments(self) -> IntArray:
+        """int (s, 2), the indices of their ends. They may overlap, and end inside of one another."""
+
     @property
-    def holes(self) -> FloatArray: ...
+    def holes(self) -> FloatArray:
+        """float64 (h, 2), a point inside each hole."""
+
     @property
-    def regions(self) -> FloatArray: ...
+    def regions(self) -> FloatArray:
+        """float64 (r, 3 or more): x, y of a point inside a region, its attribute, and what else there is."""
+
     @property
-    def rule(self) -> str: ...
+    def rule(self) -> str:
+        """ "seeds": the faces of the segments that reach neither infinity nor a hole's point. "even-odd": those that an
+        odd number of segments (coincident ones counted) separates from infinity and that reach no hole's point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +136,8 @@ def _faults(points: FloatArray, segments: Integers) -> list[Fault]:
     ]
     sound = np.flatnonzero(~outside)
     a, b = segments[sound].astype(np.intp).T
-    for i in sound[(points[a] == points[b]).all(axis=1)].tolist():
-        faults.append(Fault(FaultKind.ZERO_LENGTH, (i,), f"segment {i} has no length"))
-    return faults
+    empty = sound[(points[a] == points[b]).all(axis=1)]
+    return faults + [Fault(FaultKind.ZERO_LENGTH, (i,), f"segment {i} has no length") for i in empty.tolist()]
 
 
 def require_even_ends(outline: Outline, position: IndexArray) -> None:

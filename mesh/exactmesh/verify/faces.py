@@ -239,7 +239,10 @@ def _swept(
     rank_of[vertices] = rank[: len(vertices)]
     a, b = rank_of[origin], rank_of[target]
     c, d = rank[len(vertices) : nodes].reshape(-1, 2).T
-    low, high = np.concatenate([np.minimum(a, b), np.minimum(c, d)]), np.concatenate([np.maximum(a, b), np.maximum(c, d)])
+    low, high = (
+        np.concatenate([np.minimum(a, b), np.minimum(c, d)]),
+        np.concatenate([np.maximum(a, b), np.maximum(c, d)]),
+    )
     plane = _plane(points, node, low, high, bool(len(ends)))
     rigid = len(slots)
     plane.sort[:rigid] = np.where(links.kinds[slots] == BOUNDARY, np.where(a < b, UP, DOWN), INNER)
@@ -269,6 +272,8 @@ def joined_marks(faces: Faces, marks: Marks, bits: int) -> None:
     rigid = len(faces.slots)
     joined = faces.plane.joined[:rigid] > 0
     slots = faces.slots[joined]
-    marks[slots] = (marks[slots] & ~np.uint8(ODD)) | (bits & ~ODD) | np.where(faces.plane.odd[:rigid][joined], ODD, 0).astype(np.uint8)
-
-
+    marks[slots] = (
+        (marks[slots] & ~np.uint8(ODD))
+        | (bits & ~ODD)
+        | np.where(faces.plane.odd[:rigid][joined], ODD, 0).astype(np.uint8)
+    )

@@ -11,9 +11,7 @@ __all__ = ["corners_at", "lexicographic_order"]
 
 
 @jit
-def match_in_order(
-    points: FloatArray, used: npt.NDArray[np.bool_], wanted: FloatArray, found: IndexArray
-) -> None:
+def match_in_order(points: FloatArray, used: npt.NDArray[np.bool_], wanted: FloatArray, found: IndexArray) -> None:
     """Match as long as both lists are in the same order, and the one of them has nothing that the other lacks."""
     j = 0
     for i in range(len(wanted)):

@@ -12,8 +12,6 @@ vertex in which nothing ends; its face is that above the edge below it.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from exactkernel.context import Context
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray, SignArray
@@ -21,7 +19,21 @@ from exactmesh.verify.status import NIL, Status, insert, remove
 from exactmesh.verify.sweep import turn
 from exactmesh.verify.witness import IndexArray
 
-__all__ = ["CROSSING", "CUT", "DOWN", "INNER", "LOOSE", "QUERY", "UP", "WHOLE", "Plane", "flatten", "glue", "push", "sweep_plane"]
+__all__ = [
+    "CROSSING",
+    "CUT",
+    "DOWN",
+    "INNER",
+    "LOOSE",
+    "QUERY",
+    "UP",
+    "WHOLE",
+    "Plane",
+    "flatten",
+    "glue",
+    "push",
+    "sweep_plane",
+]
 
 # Sorts of edges.
 LOOSE = 0

@@ -63,9 +63,9 @@ class Property(StrEnum):
     UNDECIDED without ADMISSIBLE and COVERS_HULL unless a violation is found or there is no triangle."""
     SEGMENTS_PRESENT = "segments_present"
     """Every segment is a strictly monotone chain of edges of the triangles, exactly collinear, from end to end, by
-    index. Of a segment of the domain, between points of the mesh at the positions of its ends, parts may be missing that
-    lie outside of the closed domain and outside of all triangles; but two such segments may only cross in a corner or in
-    an end of a segment. UNDECIDED without ADMISSIBLE if some segment is no chain."""
+    index. The ends of a segment of the domain are the corners at their positions, and parts of it may be missing that
+    lie outside of the closed domain and outside of all triangles; but where parts are missing, two segments may cross
+    in a corner or in an end of a segment only. UNDECIDED without ADMISSIBLE if some segment is no chain."""
     CONSTRAINED_DELAUNAY = "constrained_delaunay"
     """Every triangle has an area, and no point of the set, used or not, that is strictly inside its circumcircle is
     visible from its interior: for no x in the interior of the triangle does the open line segment from x to the point
@@ -224,13 +224,13 @@ def claimed_properties(
         raise ChoiceError(f"claims={claims!r} is no collection of properties") from None
     if not claims:
         raise ChoiceError("no claim: nothing would be promised; None claims a Delaunay triangulation")
-    named = {claim: claim.replace("-", "_") if isinstance(claim, str) else claim for claim in claims}
-    for claim, name in named.items():
+    named = [str(claim).replace("-", "_") for claim in claims]
+    for claim, name in zip(claims, named, strict=True):
         if name not in tuple(Property):
             raise ChoiceError(f"{claim!r} is no property; choose from {', '.join(Property)}")
         if name not in asked:
             raise ChoiceError(f"{name} cannot be claimed without {_NEEDS[Property(name)]}")
-    return tuple(property_ for property_ in Property if property_ in named.values())
+    return tuple(property_ for property_ in Property if property_ in named)
 
 
 def orientation_of(orientation: Orientation | str) -> Orientation:

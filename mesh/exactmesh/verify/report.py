@@ -18,6 +18,7 @@ FORMAT = "exactmesh-report/1"
 
 _MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
 _UNCLAIMED_FAILS = "-"  # a fact, not a fault
+_WIDTH = 16  # of the column of names
 _SHOWN = 3  # violations of a property that str(report) prints
 
 
@@ -184,7 +185,7 @@ class Report:
     def _lines(self) -> Iterator[str]:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
         yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
-        width = max(map(len, self.findings))
+        width = max(_WIDTH, *map(len, self.findings))
         for property_, finding in self.findings.items():
             claimed = property_ in self.claims
             fails = finding.verdict is Verdict.FAILS
