@@ -123,7 +123,7 @@ BAD: dict[str, tuple[Arguments, Kind, str]] = {
     "a line": ({"points": [(0, 0), (1, 1), (2, 2)], "segments": [(0, 2)]}, CollinearPointsError, "line"),
     "points masked": ({**GOOD, "points": masked("points", 6.0)}, CoordinateError, r"points\[7\]: masked"),
     "segments masked": ({**GOOD, "segments": masked("segments", 6)}, ShapeError, "segments has masked values"),
-    "markers masked": ({**GOOD, "segment_markers": masked("segment_markers", 9)}, ShapeError, "segment_markers has masked values"),
+    "markers masked": ({**GOOD, "point_markers": masked("point_markers", 3)}, ShapeError, "point_markers has masked"),
 }  # fmt: skip
 
 

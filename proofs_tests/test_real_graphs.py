@@ -10,7 +10,6 @@ import pytest
 from bokeh_sampledata import us_counties, us_states
 from proofs_tests import constrained_oracle, oracles
 
-from exactkernel import incircle_batch
 from exactkernel.jit import COMPILED
 from exactkernel.types import FloatArray
 from exactmesh import PSLG, Carve, CrossingError, Triangulation, constrained_delaunay, verify
@@ -51,18 +50,12 @@ def shoelace(rings: Rings) -> Fraction:
     return sum((abs(twice_area(ring, [list(range(len(ring)))])) for ring in rings), Fraction(0))
 
 
-def check(mesh: Triangulation) -> None:
-    """Admissible, and Delaunay but for the constrained edges: theorem E; every constrained edge is an edge."""
-    assert verify(mesh.points, mesh.triangles, claims=["admissible", "edge_manifold", "all_points_used"]).ok
-    t, i = np.nonzero(mesh.neighbors > np.arange(len(mesh.triangles))[:, None])
-    u = mesh.neighbors[t, i]
-    corners = [mesh.triangles[t, (i + k) % 3] for k in range(3)]
-    opposite = mesh.triangles[u].sum(axis=1) - corners[1] - corners[2]
-    conflict = incircle_batch(*(mesh.points[v] for v in (*corners, opposite))) > 0
-    fixed = {frozenset(edge) for edge in mesh.segments.tolist()}
-    rows = np.stack([corners[1], corners[2]], axis=1)
-    assert {frozenset(edge) for edge in rows[conflict].tolist()} <= fixed
-    assert fixed <= {frozenset(edge) for edge in mesh.edges.tolist()}
+def check(mesh: Triangulation, rule: Carve) -> None:
+    """Verified: the constrained Delaunay triangulation of the domain; and the boundary has its area, exactly."""
+    graph = mesh.arrangement.pslg if mesh.arrangement else mesh.pslg
+    assert graph is not None
+    report = verify(mesh.points, mesh.triangles, domain=PSLG(graph.points, graph.segments, rule=rule))
+    assert report.ok, report.violations
     triangles = [t.tolist() for t in mesh.triangles]
     assert twice_area(mesh.points, [loop.tolist() for loop in mesh.boundary()]) == twice_area(mesh.points, triangles)
 
@@ -85,7 +78,7 @@ class TestStates:
     def test_state(self, name: str) -> None:
         rings = STATES[name]
         mesh = constrained_delaunay(PSLG.from_rings(rings))
-        check(mesh)
+        check(mesh, Carve.EVEN_ODD)
         loops = [loop.tolist() for loop in mesh.boundary()]
         assert twice_area(mesh.points, loops) == shoelace(rings)
         if not len(mesh.pslg.duplicates if mesh.pslg else ()):
@@ -105,7 +98,7 @@ class TestCounties:
         pslg = PSLG.from_rings(rings)
         assert len(pslg.points) == len(pslg.segments) == sum(len({tuple(p) for p in ring.tolist()}) for ring in rings)
         mesh = constrained_delaunay(pslg, carve=Carve.SEEDS)
-        check(mesh)
+        check(mesh, Carve.SEEDS)
         assert twice_area(mesh.points, [loop.tolist() for loop in mesh.boundary()]) == shoelace(rings)
         assert len(mesh.segment_incidence) >= len(pslg.segments)
         assert set(np.bincount(mesh.segment_incidence[:, 0])) <= {1, 2}
@@ -139,8 +132,8 @@ class TestDisagreement:
                 assert constrained_oracle.crosses(exact, pslg.segments[i].tolist(), pslg.segments[j].tolist())
         union = constrained_delaunay(pslg, carve=Carve.SEEDS, crossings="split")
         once = constrained_delaunay(pslg, crossings="split")
-        check(union)
-        check(once)
+        check(union, Carve.SEEDS)
+        check(once, Carve.EVEN_ODD)
         areas = [twice_area(m.points, [loop.tolist() for loop in m.boundary()]) for m in (once, union)]
         assert areas[0] < areas[1] < shoelace(COUNTIES[name])
 
@@ -155,7 +148,7 @@ class TestOneGraph:
         ]
         pslg = PSLG.from_rings(rings)
         mesh = constrained_delaunay(pslg, carve=Carve.SEEDS, crossings="split")
-        check(mesh)
+        check(mesh, Carve.SEEDS)
         assert len(mesh.segments) < len(pslg.segments)
         for i in range(0, len(pslg.segments), 10):
             vertices = mesh.chain(i)
