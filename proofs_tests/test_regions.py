@@ -15,7 +15,7 @@ from proofs_tests.constrained_oracle import Segment
 from proofs_tests.oracles import RationalPoint, Triangle
 from proofs_tests.pslg_strategies import Seeded, seeded
 
-from exactmesh import PSLG, Carve, FaultKind, PSLGError, Triangulation, constrained_delaunay, delaunay
+from exactmesh import PSLG, Carve, FaultKind, PSLGError, Triangulation, constrained_delaunay, delaunay, verify
 from exactmesh.errors import CollinearPointsError, TooFewPointsError
 
 Corners = tuple[RationalPoint, ...]
@@ -219,6 +219,18 @@ class TestDomain:
         assert sorted(mesh.segment_incidence.tolist()) == mesh.segment_incidence.tolist()
         assert {(edges[row], i) for row, i in mesh.segment_incidence.tolist()} == incidence
         assert len(set(edges)) == len(edges) == len({edge for edge, _ in incidence})
+
+    @given(seeded())
+    @settings(max_examples=120)
+    def test_verified(self, case: Seeded) -> None:
+        """The verifier, which knows of no flood, agrees, with each region as well."""
+        pslg = pslg_of(case)
+        mesh = carved(pslg) if pslg else []
+        if pslg is None or not isinstance(mesh, Triangulation):
+            return
+        labels = mesh.triangle_attributes[:, 0] if len(pslg.regions) else None
+        report = verify(mesh.points, mesh.triangles, domain=pslg, labels=labels)
+        assert report.ok, report.violations
 
     def test_control_coincident_rings(self) -> None:
         """Each of several coincident segments counts: a ring given twice bounds nothing, three times, it does."""

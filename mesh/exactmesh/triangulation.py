@@ -137,8 +137,12 @@ class Triangulation:
         if self.points.shape != (vertices, 2) or not self.triangles.shape == self.neighbors.shape == (faces, 3):
             raise ShapeError("points are (n, 2), triangles and neighbors (m, 3)")
         for f in fields(self):
-            if isinstance(getattr(self, f.name), np.ndarray):
-                getattr(self, f.name).setflags(write=False)
+            array = getattr(self, f.name)
+            if isinstance(array, np.ndarray):
+                if array.base is not None:  # that would stay writable
+                    array = array.copy()
+                    object.__setattr__(self, f.name, array)
+                array.setflags(write=False)
 
     def __repr__(self) -> str:
         segments = f", {len(self.segments)} segments" if len(self.segments) else ""
