@@ -1,4 +1,4 @@
-"""``python -m benchmarks delaunay|verify [--quick] [--rounds N]``."""
+"""``python -m benchmarks delaunay|constrained|verify [--quick] [--rounds N]``."""
 
 import os
 
@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from benchmarks import constrained as constrained_benchmark
 from benchmarks import delaunay as delaunay_benchmark
 from benchmarks import verify as verify_benchmark
 
@@ -21,6 +22,12 @@ Rounds = Annotated[int, typer.Option(min=1, help="How often each mesher has its 
 def delaunay(quick: Quick = False, rounds: Rounds = 5) -> None:
     """Race the meshers on point sets; growth, memory, stages, starts."""
     delaunay_benchmark.run(quick=quick, rounds=rounds)
+
+
+@app.command()
+def constrained(quick: Quick = False, rounds: Rounds = 5) -> None:
+    """Race the constrained meshers on graphs; crossings and their growth."""
+    constrained_benchmark.run(quick=quick, rounds=rounds)
 
 
 @app.command()

@@ -5,22 +5,11 @@ import math
 from benchmarks.inputs import INPUTS, points_of
 from benchmarks.peers import PEERS
 from benchmarks.starts import first_call_seconds, later_start_seconds
-from benchmarks.tables import Section
-from benchmarks.workers import Outcome, race
+from benchmarks.tables import Section, cell
+from benchmarks.workers import race
 from exactkernel import Stage
 
 __all__ = ["run"]
-
-
-def _cell(outcome: Outcome, own: Outcome) -> str:
-    if outcome.failure:
-        return outcome.failure
-    cell = f"{outcome.median:.3f} s"
-    if outcome is not own and own.seconds:
-        cell += f" ({outcome.median / own.median:.2f})"
-        if outcome.count != own.count:
-            cell += f", {outcome.count - own.count:+d} triangles"
-    return cell
 
 
 def _stages(section: Section, quick: bool) -> None:
@@ -63,7 +52,7 @@ def run(*, quick: bool = False, rounds: int = 5) -> None:
     rows = []
     for name, (_, size, title) in INPUTS.items():
         outcomes = race(list(PEERS), name, size=size // 100 if quick else None, rounds=rounds)
-        rows.append([title, *(_cell(outcome, outcomes["exactmesh"]) for outcome in outcomes.values())])
+        rows.append([title, *(cell(outcome, outcomes["exactmesh"]) for outcome in outcomes.values())])
         print(" | ".join(rows[-1]), flush=True)
     section.table(["input", *(peer.name for peer in PEERS.values())], rows)
     section.text("What is timed: " + "; ".join(f"{peer.name}: {peer.note}" for peer in PEERS.values()) + ".")

@@ -22,14 +22,14 @@ class Mesher:
     Attributes:
         name: as printed.
         package: the distribution on PyPI.
-        prepare: points -> what the timed call takes.
+        prepare: points or a graph -> what the timed call takes.
         run: the timed call; returns how many triangles came out.
         note: what exactly is timed.
     """
 
     name: str
     package: str
-    prepare: Callable[[FloatArray], Any]
+    prepare: Callable[[Any], Any]
     run: Callable[[Any], int]
     note: str
 

@@ -10,15 +10,16 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.peers import PEERS, version_of
+from benchmarks.workers import Outcome
 
-__all__ = ["Section", "machine"]
+__all__ = ["Section", "cell", "machine"]
 
 _PAGE = Path(__file__).resolve().parent.parent / "docs" / "benchmarks.md"
 _HEAD = """# Benchmarks
 
 Side by side in one run on one machine: each mesher in a process of its own, taking turns round after round; medians,
-and in parentheses the ratio to exactmesh (2.0: it takes twice as long). Rerun with `python -m benchmarks delaunay` and
-`python -m benchmarks verify` after `pip install '.[bench]'`; each run rewrites its section.
+and in parentheses the ratio to exactmesh (2.0: it takes twice as long). Rerun with `python -m benchmarks delaunay`,
+`constrained` and `verify` after `pip install '.[bench]'`; each run rewrites its section.
 """
 
 
@@ -72,3 +73,15 @@ class Section:
             page = page.rstrip() + "\n\n" + body + "\n"
         _PAGE.write_text(page, encoding="utf-8")
         self._console.print(f"written to {_PAGE}")
+
+
+def cell(outcome: Outcome, own: Outcome) -> str:
+    """Return a median with its ratio to the own one, or why there is none."""
+    if outcome.failure:
+        return outcome.failure
+    cell = f"{outcome.median:.3f} s"
+    if outcome is not own and own.seconds:
+        cell += f" ({outcome.median / own.median:.2f})"
+        if outcome.count != own.count:
+            cell += f", {outcome.count - own.count:+d} triangles"
+    return cell

@@ -7,7 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from statistics import median
+from typing import Any
 
+from benchmarks.constraining import CONSTRAINERS
+from benchmarks.graphs import GRAPHS, graph_of
 from benchmarks.inputs import points_of
 from benchmarks.peers import PEERS, Mesher, version_of
 from benchmarks.verifying import VERIFIERS
@@ -15,6 +18,7 @@ from benchmarks.verifying import VERIFIERS
 __all__ = ["Outcome", "race"]
 
 _LIMIT_SECONDS = 60.0  # for one call, after which a mesher is out of the race
+_START_SECONDS = 300.0  # for the start, with compilation, conversions and warming up
 
 
 @dataclass
@@ -40,17 +44,22 @@ class Outcome:
 
 
 def _mesher(key: str) -> Mesher:
-    return PEERS[key] if key in PEERS else VERIFIERS[key]
+    return {**PEERS, **VERIFIERS, **CONSTRAINERS}[key]
+
+
+def _input(name: str, size: int | None) -> Any:
+    return graph_of(name, size) if name in GRAPHS else points_of(name, size)
 
 
 def _serve(pipe: Connection, key: str, name: str, size: int | None) -> None:
     """Prepare the input, warm up on a small one, then run once for each message."""
     mesher = _mesher(key)
     try:
-        mesher.run(mesher.prepare(points_of(name, 400)))
-        points = points_of(name, size)
+        mesher.run(mesher.prepare(_input(name, 400)))
+        given = _input(name, size)
+        points = given.points if name in GRAPHS else given
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        prepared = mesher.prepare(points)
+        prepared = mesher.prepare(given)
         pipe.send("ready")
         while pipe.recv() == "run":
             start = time.perf_counter()
@@ -73,13 +82,13 @@ class _Worker:
         self._process = context.Process(target=_serve, args=(other, key, name, size), daemon=True)
         self._process.start()
         other.close()
-        self._answer()
+        self._answer(_START_SECONDS)
 
-    def _answer(self) -> object:
+    def _answer(self, limit: float = _LIMIT_SECONDS) -> object:
         try:
-            if not self._pipe.poll(_LIMIT_SECONDS):
+            if not self._pipe.poll(limit):
                 self._process.kill()
-                self.outcome.failure = f"over {_LIMIT_SECONDS:.0f} s"
+                self.outcome.failure = f"over {limit:.0f} s"
                 return None
             answer: object = self._pipe.recv()
         except (EOFError, ConnectionResetError):

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.types import FloatArray
-from exactmesh import Triangulation, delaunay, lawson
+from exactmesh import PSLG, Carve, Crossings, Triangulation, constrained_delaunay, delaunay, lawson
 from exactmesh.ordering import insertion_order
 
 __all__ = ["digests", "inputs"]
@@ -47,6 +47,31 @@ def _mesh(mesh: Triangulation) -> str:
     return _hash(mesh.points, mesh.triangles, mesh.neighbors, mesh.representative, mesh.hull, np.array(work))
 
 
+def graphs(points: FloatArray) -> dict[str, PSLG]:
+    """Graphs without crossings: a path through all points, a segment past them, the hull; and one with crossings."""
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    apart = (points[order[1:]] != points[order[:-1]]).any(axis=1)
+    path = np.stack([order[:-1], order[1:]], axis=1)[apart]
+    mesh = delaunay(points)
+    hull = np.stack([mesh.hull, np.roll(mesh.hull, -1)], axis=1)
+    random = np.random.default_rng(5).integers(0, len(mesh.points), (8, 2))
+    across = np.unique(np.sort(random[random[:, 0] != random[:, 1]], axis=1), axis=0)
+    markers = np.arange(len(hull)) % 3
+    return {
+        "path": PSLG(points, path, point_markers=np.arange(len(points)) % 4),
+        "long segment": PSLG(points, [(order[0], order[-1])]),
+        "hull": PSLG(mesh.points, hull, segment_markers=markers, rule=Carve.EVEN_ODD),
+        "crossings": PSLG(mesh.points, across),
+    }
+
+
+def _constrained(pslg: PSLG, name: str) -> str:
+    mesh = constrained_delaunay(pslg, carve=name == "hull", crossings=Crossings.SPLIT)
+    chains = [mesh.chain(i) for i in range(len(pslg.segments))]
+    columns = (mesh.segment_markers, mesh.vertex_markers, mesh.edge_markers, mesh.triangle_regions)
+    return _hash(np.array(_mesh(mesh)), mesh.segments, mesh.segment_incidence, *columns, *chains)
+
+
 def shuffled(mesh: Triangulation) -> npt.NDArray[np.int32]:
     """Return the triangles after a number of flips that ask nothing: any triangulation of a grid of squares will do."""
     surface = mesh.quad_edge()
@@ -73,6 +98,8 @@ def digests() -> dict[str, str]:
         queries = np.concatenate([points, points * 0.75])
         found[f"locate in {name}"] = _hash(mesh.locate(queries))
         found[f"quad-edge of {name}"] = _hash(*(np.array([e.index, e.org, e.left]) for e in mesh.quad_edge().edges()))
+        for kind, pslg in graphs(points).items():
+            found[f"{kind} of {name}"] = _constrained(pslg, kind)
         if name in ("grid", "uniform"):
             found[f"lawson of shuffled {name}"] = _mesh(lawson(mesh.points, shuffled(mesh)))
     return found

@@ -7,14 +7,15 @@ import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from exactmesh import cli
+from exactmesh import PSLG, cli, constrained_delaunay
 from exactmesh.cli import main
-from exactmesh.io import Mesh, read, write
+from exactmesh.io import Mesh, read, read_pslg, write, write_pslg
 from exactmesh.verify import verify
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.25)]
@@ -99,6 +100,163 @@ class TestTriangulate:
         assert sorted(os.listdir()) == before
 
 
+LAKE = PSLG(
+    [(0, 0), (10, 0), (10, 8), (0, 8), (3, 3), (6, 3), (5, 6), (0, 0), (5, 20), (1, 0.5)],
+    [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4)],
+    holes=[(4.5, 4)],
+    regions=[(1, 1, 42)],
+    segment_markers=[5, 5, 6, 7, 9, 9, 9],
+    point_attributes=np.arange(10.0)[:, None] + 0.5,
+)
+CROSS = PSLG(
+    [(0, 0), (10, 0), (10, 10), (0, 10), (1, 1), (9.5, 7), (3, 9), (8, 2)],
+    [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)],
+)
+RINGS = '{"type": "Polygon", "coordinates": [[[0,0],[9,0],[9,9],[0,9],[0,0]], [[1,1],[2,1],[1,2],[1,1]]]}'
+
+
+class TestTriangulateGraphs:
+    """Of a graph, the constrained Delaunay triangulation of its domain is written, with all that is known of it."""
+
+    def test_as_the_library_does(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE, base=1)
+        assert main(["triangulate", "lake.poly"]) == 0
+        assert capsys.readouterr().out == (
+            "1 of 10 points left out as duplicates: 8 of 1\n"
+            "8 points, 9 triangles, 7 segments, 1 points outside of the domain left out: "
+            "lake.1.node lake.1.ele lake.1.poly\n"
+        )
+        mesh = read("lake.1.ele")
+        expected = constrained_delaunay(LAKE)
+        assert mesh.base == 1
+        for array, other in (
+            (mesh.points, expected.points),
+            (mesh.triangles, expected.triangles),
+            (mesh.segments, expected.segments),
+            (mesh.segment_markers, expected.segment_markers),
+            (mesh.point_markers, expected.vertex_markers),
+            (mesh.point_attributes, expected.vertex_attributes),
+            (mesh.triangle_attributes, expected.triangle_attributes),
+            (mesh.holes, LAKE.holes),
+            (mesh.regions, LAKE.regions),
+        ):
+            assert array is not None
+            assert array.tolist() == other.tolist()
+
+    def test_rules(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("ring.geojson").write_text(RINGS)
+        counts = {}
+        for rule in ("seeds", "even-odd", "none"):
+            assert main(["triangulate", "ring.geojson", "--carve", rule, "-o", f"{rule}.npz"]) == 0
+            counts[rule] = len(read(f"{rule}.npz").triangles)  # type: ignore[arg-type]  # there are some
+        assert counts == {"seeds": 8, "even-odd": 7, "none": 8}
+        assert main(["triangulate", "ring.geojson"]) == 0
+        assert "7 points, 7 triangles, 7 segments: ring.1.node ring.1.ele ring.1.poly" in capsys.readouterr().out
+
+    def test_an_archive_with_segments(self) -> None:
+        write("m.npz", Mesh(LAKE.points[:7], segments=LAKE.segments, holes=LAKE.holes))
+        assert main(["triangulate", "m.npz"]) == 0
+        assert read("m.1.ele").segments is not None
+
+    def test_crossings(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("cross.poly", CROSS, base=1)
+        expected = "exactmesh: cross.poly: segments cross: 5 and 6; --crossings split makes their crossings vertices\n"
+        assert complaint(capsys, "triangulate", "cross.poly") == expected
+        assert main(["triangulate", "cross.poly", "--crossings", "split"]) == 0
+        told = capsys.readouterr().out
+        facts = re.match(
+            r"9 points, 12 triangles, 8 segments, 1 crossings split, segments moved by at most (.*):", told
+        )
+        assert facts is not None
+        assert 0.0 < float(facts[1]) < 1e-15
+
+    def test_a_stale_file_does_not_stay(self) -> None:
+        """A .poly of an older mesh would be read as this one's; one with points of its own is somebody's."""
+        write("x.node", Mesh(SQUARE))
+        write("x.1.poly", Mesh(SQUARE, segments=[(0, 2)]))
+        assert main(["triangulate", "x.node"]) == 0
+        assert read("x.1.ele").segments is not None
+        assert len(read("x.1.ele").segments) == 0  # type: ignore[arg-type]  # seen
+        write_pslg("x.1.poly", LAKE)
+        assert main(["triangulate", "x.node"]) == 0
+        assert read_pslg("x.1.poly") == LAKE
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE)
+        write("x.node", Mesh(SQUARE))
+        text = Path("lake.poly").read_text()
+        Path("bad.poly").write_text(text.replace("6 6 4 9", "6 6 6 9"))
+        Path("open.poly").write_text(text.replace("3 3 0 7", "3 3 4 7"))
+        Path("far.poly").write_text(text.replace("6 6 4 9", "6 6 77 9"))
+        Path("bad.json").write_text("{")
+        Path("line.geojson").write_text('{"type": "LineString", "coordinates": [[0, 0], [1, 1], [2, 2]]}')
+        before = sorted(os.listdir())
+        assert "bad.poly: segment 6 begins and ends in point 6" in complaint(capsys, "triangulate", "bad.poly")
+        assert complaint(capsys, "triangulate", "open.poly").startswith("exactmesh: open.poly: ")
+        assert "far.poly:19: point 77 does not exist" in complaint(capsys, "triangulate", "far.poly")
+        assert "bad.json: is no JSON" in complaint(capsys, "triangulate", "bad.json")
+        assert "line.geojson: " in complaint(capsys, "triangulate", "line.geojson")
+        assert "'odd'; choose from seeds, even-odd, none" in complaint(
+            capsys, "triangulate", "lake.poly", "--carve", "odd"
+        )
+        assert "'ignore'" in complaint(capsys, "triangulate", "lake.poly", "--crossings", "ignore")
+        assert "x.node holds points" in complaint(capsys, "triangulate", "x.node", "--carve", "seeds")
+        assert "x.node holds points" in complaint(capsys, "triangulate", "x.node", "--crossings", "split")
+        assert "would overwrite" in complaint(capsys, "triangulate", "lake.poly", "-o", "lake.node")
+        assert sorted(os.listdir()) == before
+
+    def test_numbers_that_count_from_one(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE, base=1)
+        Path("bad.poly").write_text(Path("lake.poly").read_text().replace("7 7 5 9", "7 7 7 9"))
+        told = complaint(capsys, "triangulate", "bad.poly")
+        assert "segment 6 begins and ends in point 6" in told
+        assert told.endswith("[numbers here count from 0, those in the file from 1]\n")
+
+
+class TestVerifyDomains:
+    """With --domain, the claim is the constrained Delaunay triangulation of that domain."""
+
+    @pytest.fixture(autouse=True)
+    def _files(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE, base=1)
+        Path("ring.geojson").write_text(RINGS)
+        assert main(["triangulate", "lake.poly"]) == 0
+        assert main(["triangulate", "ring.geojson"]) == 0
+        capsys.readouterr()
+
+    def test_verdict(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["verify", "lake.1.ele", "--domain", "lake.poly"]) == 0
+        assert "every claim holds" in capsys.readouterr().out
+        assert main(["verify", "lake.1.ele", "--domain", "lake.poly", "--claim", "constrained-delaunay"]) == 0
+        assert main(["verify", "lake.1.ele", "--domain", "lake.poly", "--claim", "covers_domain"]) == 0
+        assert main(["verify", "ring.1.ele", "--domain", "ring.geojson"]) == 0
+        assert main(["verify", "ring.1.ele", "--domain", "ring.geojson", "--carve", "seeds"]) == 1
+
+    def test_control_another_mesh_is_no_triangulation_of_the_domain(self) -> None:
+        mesh = read("lake.1.ele")
+        assert mesh.triangles is not None
+        assert mesh.triangle_attributes is not None
+        without = replace(mesh, triangles=mesh.triangles[1:], triangle_attributes=mesh.triangle_attributes[1:])
+        write("less.npz", without)
+        assert main(["verify", "less.npz", "--domain", "lake.poly"]) == 1
+        write("other.npz", replace(mesh, triangle_attributes=mesh.triangle_attributes + 1.0))
+        assert main(["verify", "other.npz", "--domain", "lake.poly"]) == 1
+        assert main(["verify", "ring.1.ele", "--domain", "lake.poly"]) == 1
+
+    def test_without_a_domain_it_is_the_hull(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert main(["verify", "lake.1.ele"]) == 1
+        assert "--domain FILE says what it should cover" in capsys.readouterr().out
+        assert main(["triangulate", "lake.poly", "--carve", "none"]) == 0
+        assert main(["verify", "lake.1.ele"]) == 0
+
+    def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
+        assert "nix.poly: no such file" in complaint(capsys, "verify", "lake.1.ele", "--domain", "nix.poly")
+        assert "'odd'" in complaint(capsys, "verify", "lake.1.ele", "--domain", "lake.poly", "--carve", "odd")
+        assert "--carve" in complaint(capsys, "verify", "lake.1.ele", "--carve", "seeds")
+        Path("bad.poly").write_text("x 1")
+        assert "bad.poly:1:" in complaint(capsys, "verify", "lake.1.ele", "--domain", "bad.poly")
+
+
 class TestVerify:
     """The exit code is 0 if every claim holds, 1 if one does not, 2 if there is nothing to judge."""
 
@@ -176,6 +334,13 @@ class TestInfo:
             assert re.search(rf"\b{name} +│ +{re.escape(value)} ", told), (name, told)
         assert not re.search(r"\btriangles +│ +2 ", told)  # control
 
+    def test_of_a_graph(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE, base=1)
+        assert main(["info", "lake.poly"]) == 0
+        told = capsys.readouterr().out
+        for name, value in {"segments": "7", "segment markers": "5 to 9", "holes": "1", "regions": "1"}.items():
+            assert re.search(rf"\b{name} +│ +{value} ", told), (name, told)
+
     @pytest.mark.parametrize("mesh", [Mesh(np.zeros((0, 2))), Mesh([(1e308, -1e308)], triangles=np.zeros((0, 3), int))])
     def test_next_to_nothing(self, mesh: Mesh) -> None:
         write("m.npz", mesh)
@@ -195,6 +360,14 @@ class TestPlot:
         assert Path("m.png").read_bytes().startswith(b"\x89PNG")
         assert main(["plot", "m.node", "-o", "m.svg", "--title", "thin"]) == 0
         assert b"</svg>" in Path("m.svg").read_bytes()
+
+    def test_segments(self) -> None:
+        write_pslg("lake.poly", LAKE)
+        assert main(["plot", "lake.poly", "-o", "lake.svg"]) == 0
+        assert b"#c1121f" in Path("lake.svg").read_bytes()
+        write("m.ele", Mesh(THIN, triangles=DELAUNAY))
+        assert main(["plot", "m.ele", "-o", "m.svg"]) == 0
+        assert b"#c1121f" not in Path("m.svg").read_bytes()  # control
 
     def test_bad_input(self, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
         write("m.ele", Mesh(THIN, triangles=DELAUNAY))
@@ -240,6 +413,11 @@ class TestTheCommandItself:
     def test_help(self, arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
         assert main(arguments) == 0
         assert "Usage: exactmesh" in capsys.readouterr().out
+
+    def test_as_a_module(self, inside: Path) -> None:
+        write("bad.ele", Mesh(THIN, triangles=NOT_DELAUNAY))
+        command = [sys.executable, "-m", "exactmesh", "verify", "bad.ele"]
+        assert subprocess.run(command, cwd=inside, capture_output=True, check=False).returncode == 1
 
     def test_version(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["--version"]) == 0

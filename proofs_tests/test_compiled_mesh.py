@@ -14,7 +14,7 @@ from proofs_tests.enumeration import grid
 from proofs_tests.test_kernel_compiled import FUSED, HAS_FUSED, in_a_child, machine_code
 
 from exactkernel.incircle import determinant_and_permanent
-from exactmesh import delaunay, lawson
+from exactmesh import PSLG, constrained_delaunay, delaunay, lawson
 
 ROOT = Path(__file__).parents[1]
 
@@ -22,8 +22,8 @@ ROOT = Path(__file__).parents[1]
 @pytest.mark.compiled
 @pytest.mark.obligation("J1", "the mesh algorithms return the same bits compiled and interpreted, and do the same work")
 class TestLanes:
-    """Insertion, flips, location, order and the quad-edge return the same bits compiled, in this process and a later
-    one, and interpreted; the predicates were decided by the same stages."""
+    """Insertion, flips, location, order, quad-edge and segments return the same bits compiled, in this process and a
+    later one, and interpreted; the predicates were decided by the same stages."""
 
     @pytest.mark.parametrize("disable", ["1", "0"])
     def test_child(self, disable: str) -> None:
@@ -44,11 +44,13 @@ class TestBounds:
     """No routine leaves an array on any of the inputs of the digest: with NUMBA_BOUNDSCHECK=1 it would raise."""
 
     def test_all(self) -> None:
-        assert len(mesh_digest.digests()) == 5 * len(mesh_digest.inputs()) + 2
+        assert len(mesh_digest.digests()) == 9 * len(mesh_digest.inputs()) + 2
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of insertion, flips and location")
+@pytest.mark.obligation(
+    "J1", "there is no fused multiply-add in the machine code of insertion, flips, location and segments"
+)
 class TestMachineCode:
     """No loop over the mesh contains a fused multiply-add in the filters that were copied into it."""
 
@@ -56,11 +58,15 @@ class TestMachineCode:
         ("exactmesh.delaunay", "insert_range"),
         ("exactmesh.lawson", "flip_until_delaunay"),
         ("exactmesh.locate", "_walk_all"),
+        ("exactmesh.constrain", "constrain_range"),
+        ("exactmesh.cavity", "fill_by_chance"),
     )
 
     @pytest.mark.parametrize(("module", "name"), LOOPS)
     def test_loop(self, module: str, name: str) -> None:
         lawson(grid(3, 3), delaunay(grid(3, 3)).triangles).locate([(0.5, 0.5)])
+        curve = [(-9.0, 0.0), (9.0, 0.0), *((x / 100, 1 + x * x / 1e4) for x in range(-100, 100))]
+        constrained_delaunay(PSLG(curve, [(0, 1)]), carve=False)
         function = getattr(sys.modules[module], name)
         listing = machine_code(function, function.signatures[0], fastmath=False)
         assert "mulsd" in listing or "fmul" in listing

@@ -58,6 +58,16 @@ def mesh_files(draw: st.DrawFn) -> Mesh:
     corners = np.asarray(draw(rows(m, 3, st.integers(0, n - 1))), dtype=np.int64)
     has_edges = draw(st.booleans())
     markers = st.lists(st.integers(-9, 9), min_size=k, max_size=k)
+    if draw(st.booleans()):
+        s = draw(st.integers(0, 5))
+        of_segments = draw(st.none() | st.lists(st.integers(-(2**59), 2**59), min_size=s, max_size=s))
+        nodes = replace(
+            nodes,
+            segments=np.asarray(draw(rows(s, 2, st.integers(0, n - 1))), dtype=np.int32),
+            segment_markers=None if of_segments is None else np.array(of_segments, dtype=np.int64),
+            holes=np.asarray(draw(rows(draw(st.integers(0, 2)), 2, doubles)), dtype=np.float64),
+            regions=np.asarray(draw(rows(draw(st.integers(0, 2)), 4, doubles)), dtype=np.float64),
+        )
     return replace(
         nodes,
         triangles=corners.astype(np.int32),
@@ -74,6 +84,7 @@ def strip() -> Mesh:
         triangles=[(0, 1, 2), (0, 2, 3)],
         neighbors=[(-1, 1, -1), (-1, -1, 0)],
         edges=[(0, 1), (1, 2), (2, 0), (2, 3), (3, 0)],
+        segments=[(0, 1)],
         base=1,
     )
 
@@ -101,7 +112,7 @@ class TestRoundTrip:
         write(path, mesh)
         assert same(read_points(path), replace(mesh, base=0) if suffix == ".csv" else mesh)
 
-    @pytest.mark.parametrize("suffix", [".node", ".ele", ".neigh", ".edge", ".npz"])
+    @pytest.mark.parametrize("suffix", [".node", ".ele", ".poly", ".neigh", ".edge", ".npz"])
     def test_any_of_the_files_stands_for_all(self, tmp_path: Path, suffix: str) -> None:
         write(tmp_path / f"m{suffix}", strip())
         assert same(read(tmp_path / f"m{suffix}"), strip())
@@ -111,7 +122,7 @@ class TestRoundTrip:
             path = tmp_path / f"m{suffix}"
             write(path, strip())
             assert same(read_triangles(path), replace(strip(), neighbors=None, edges=None))
-            assert same(read_points(path), replace(strip(), triangles=None, neighbors=None, edges=None))
+            assert same(read_points(path), Mesh(strip().points, base=1))
 
     @pytest.mark.parametrize("suffix", [".node", ".npz", ".csv"])
     def test_no_points(self, tmp_path: Path, suffix: str) -> None:
@@ -155,6 +166,39 @@ class TestTriangulationsAreWritten:
         assert same(back, mesh_of(triangulation))
         assert back.neighbors is not None
         assert np.array_equal(back.neighbors, triangulation.neighbors)
+
+    @pytest.mark.parametrize("suffix", [".node", ".poly", ".npz"])
+    def test_of_a_graph(self, tmp_path: Path, suffix: str) -> None:
+        from exactmesh import PSLG, constrained_delaunay
+
+        outline = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4)]
+        pslg = PSLG(
+            [(0, 0), (9, 0), (9, 9), (0, 9), (1, 1), (3, 1), (1, 3)],
+            outline,
+            holes=[(1.5, 1.5)],
+            regions=[(8, 8, 0.1, -1)],
+            segment_markers=range(2, 9),
+            point_attributes=np.arange(7.0)[:, None],
+        )
+        triangulation = constrained_delaunay(pslg)
+        paths = write(tmp_path / f"t{suffix}", triangulation)
+        if suffix != ".npz":
+            assert [Path(path).suffix for path in paths] == [".node", ".ele", ".poly", ".neigh", ".edge"]
+        back = read(tmp_path / f"t{suffix}")
+        assert same(back, mesh_of(triangulation))
+        assert back.segments is not None
+        assert back.segments.tolist() == triangulation.segments.tolist()
+        for array, expected in (
+            (back.segment_markers, triangulation.segment_markers),
+            (back.point_markers, triangulation.vertex_markers),
+            (back.point_attributes, triangulation.vertex_attributes),
+            (back.triangle_attributes, triangulation.triangle_attributes),
+            (back.edge_markers, triangulation.edge_markers),
+            (back.holes, pslg.holes),
+            (back.regions, pslg.regions),
+        ):
+            assert array is not None
+            assert array.tolist() == expected.tolist()
 
 
 decimals = st.from_regex(r"[+-]?([0-9]{1,20}\.?[0-9]{0,20}|\.[0-9]{1,20})([eE][+-]?[0-9]{1,2})?", fullmatch=True)

@@ -1,6 +1,7 @@
 """The frozen result: what each array means, that it stays so, and where points lie in it."""
 
 import copy
+import dataclasses
 import math
 import pickle
 import sys
@@ -19,7 +20,7 @@ from proofs_tests.mesh_strategies import point_sets
 from proofs_tests.oracles import Triangle
 
 from exactkernel.jit import COMPILED
-from exactmesh import ExactMeshError, Triangulation, delaunay
+from exactmesh import PSLG, ExactMeshError, Triangulation, constrained_delaunay, delaunay
 from exactmesh.locate import locate_points
 
 #: Corners of the doubles, subnormals, both zeros, and no common window.
@@ -204,6 +205,109 @@ class TestFrozen:
 
     def test_repr(self) -> None:
         assert repr(MESHES["grid"]) == "Triangulation(20 vertices, 24 triangles)"
+
+
+def constrained_meshes() -> dict[str, Triangulation]:
+    """A square with a hole, regions, markers, attributes, duplicates and a point outside; and segments that cross."""
+    points = [(0, 0), (4, 0), (4, 4), (0, 4), (1, 1), (2, 1), (1, 2), (3, 3), (4, 4), (9, 9), (2, 0)]
+    segments = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4), (7, 8), (0, 10)]
+    full = PSLG(
+        points,
+        segments,
+        holes=[(1.25, 1.25)],
+        regions=[(3, 1, 7)],
+        point_markers=[5, *[0] * 10],
+        segment_markers=range(9),
+        point_attributes=[[float(i), -1.0] for i in range(11)],
+    )
+    crossed = PSLG(points[:4], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)], segment_markers=range(6))
+    return {
+        "carved": constrained_delaunay(full),
+        "whole": constrained_delaunay(full, carve=False),
+        "split": constrained_delaunay(crossed, crossings="split"),
+    }
+
+
+CONSTRAINED = constrained_meshes()
+ARRAYS = [f.name for f in dataclasses.fields(Triangulation) if isinstance(getattr(MESHES["grid"], f.name), np.ndarray)]
+EACH_CONSTRAINED = pytest.mark.parametrize("mesh", CONSTRAINED.values(), ids=CONSTRAINED.keys())
+EACH_COPY = pytest.mark.parametrize("made", COPIES.values(), ids=COPIES.keys())
+
+
+@EACH_CONSTRAINED
+class TestConstrained:
+    """All of this holds of the arrays that come with segments, too; the canonical form renumbers those as well."""
+
+    @EACH_COPY
+    @pytest.mark.parametrize("name", [*ARRAYS, "edges", "edge_markers"])
+    def test_read_only(self, mesh: Triangulation, name: str, made: Callable[[Triangulation], Triangulation]) -> None:
+        array = getattr(made(mesh), name)
+        assert not array.flags.writeable
+        assert array.base is None or not array.base.flags.writeable
+        for loop in made(mesh).boundary():
+            assert not loop.flags.writeable
+
+    @EACH_COPY
+    def test_copies(self, mesh: Triangulation, made: Callable[[Triangulation], Triangulation]) -> None:
+        again = made(mesh)
+        assert again.pslg == mesh.pslg
+        assert again.canonical() == mesh.canonical()
+        for name in ARRAYS:
+            assert (getattr(again.canonical(), name) == getattr(mesh.canonical(), name)).all()
+            if made is not Triangulation.canonical:
+                assert getattr(again, name).tobytes() == getattr(mesh, name).tobytes()
+                assert getattr(again, name).dtype == getattr(mesh, name).dtype
+        chains = [[m.points[m.chain(i)].tolist() for i in range(9 if len(m.points) > 5 else 6)] for m in (again, mesh)]
+        assert chains[0] == chains[1]
+
+    def test_canonical_moves_columns_along(self, mesh: Triangulation) -> None:
+        """What belongs to a place, an edge or a triangle belongs to it in the canonical form."""
+        form = mesh.canonical()
+        for m, other in ((mesh, form), (form, mesh)):
+            assert by_place(m) == by_place(other)
+
+    def test_control_equality_looks_at_segments(self, mesh: Triangulation) -> None:
+        fewer = dataclasses.replace(mesh, segments=mesh.segments[1:], segment_markers=mesh.segment_markers[1:])
+        assert fewer != mesh
+        turned = dataclasses.replace(mesh, triangle_regions=mesh.triangle_regions[::-1] + 1)
+        assert by_place(turned) != by_place(mesh)
+
+    def test_dtypes(self, mesh: Triangulation) -> None:
+        """As the attributes say, and with a row for each vertex, triangle, segment."""
+        n, m, s = len(mesh.points), len(mesh.triangles), len(mesh.segments)
+        rows = {"vertex_markers": n, "vertex_attributes": n, "triangle_attributes": m, "triangle_regions": m}
+        for name, length in {**rows, "segment_markers": s, "edge_markers": len(mesh.edges)}.items():
+            assert len(getattr(mesh, name)) == length
+        for name in ("triangles", "neighbors", "representative", "segments", "segment_incidence", "triangle_regions"):
+            assert getattr(mesh, name).dtype == np.int32
+        for name in ("segment_markers", "vertex_markers", "edge_markers"):
+            assert getattr(mesh, name).dtype == np.int64
+
+    def test_repr(self, mesh: Triangulation) -> None:
+        counts = f"{len(mesh.points)} vertices, {len(mesh.triangles)} triangles, {len(mesh.segments)} segments"
+        assert repr(mesh) == f"Triangulation({counts})"
+
+
+def by_place(mesh: Triangulation) -> dict[str, object]:
+    """Everything by position instead of by number."""
+    places = [(x, y) for x, y in mesh.points.tolist()]
+    edges = [frozenset(places[v] for v in edge) for edge in mesh.segments.tolist()]
+    corners = [frozenset(places[v] for v in t) for t in mesh.triangles.tolist()]
+    return {
+        "vertices": dict(
+            zip(places, zip(mesh.vertex_markers.tolist(), mesh.vertex_attributes.tolist(), strict=True), strict=True)
+        ),
+        "representative": [places[v] if v >= 0 else None for v in mesh.representative.tolist()],
+        "segments": dict(zip(edges, mesh.segment_markers.tolist(), strict=True)),
+        "incidence": {(edges[row], i) for row, i in mesh.segment_incidence.tolist()},
+        "triangles": dict(
+            zip(
+                corners,
+                zip(mesh.triangle_regions.tolist(), mesh.triangle_attributes.tolist(), strict=True),
+                strict=True,
+            )
+        ),
+    }
 
 
 @EACH

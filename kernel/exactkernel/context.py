@@ -23,8 +23,10 @@ __all__ = [
     "Context",
     "bits_of",
     "chunk_size",
+    "exponent_into_window",
     "guarded_context",
     "make_context",
+    "rebounded",
     "scaled_into_window",
     "thread_context",
 ]
@@ -115,6 +117,11 @@ def make_context(coordinates: FloatArray) -> Context:
     return _context(*bits_of(coordinates))
 
 
+def rebounded(k: Context, maximum: float, unit: float) -> Context:
+    """Return a context for coordinates of these bits that shares the scratch space and the tally of another."""
+    return _context(maximum, unit)._replace(scratch=k.scratch, counts=k.counts, mailbox=k.mailbox)
+
+
 def guarded_context() -> Context:
     """Return a context that assumes nothing: every call looks at its own coordinates."""
     return _context(math.inf, 0.0)
@@ -148,3 +155,15 @@ def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:
     if smallest < constants.MIN_UNIT_DEGREE_4:
         return coordinates, context
     return np.ldexp(coordinates, exponent), _context(largest, smallest)
+
+
+def exponent_into_window(maximum: float, unit: float) -> int:
+    """Return an exponent whose power of two brings coordinates of these bits into the window, 0 if there is none.
+
+    They come into the middle of the window, so that there is room for larger and for finer ones to come.
+    """
+    if maximum == 0.0 or _context(maximum, unit).incircle_bound < math.inf:
+        return 0
+    highest = 253 - math.frexp(maximum)[1]
+    lowest = math.frexp(constants.MIN_UNIT_DEGREE_4)[1] - math.frexp(unit)[1]
+    return (lowest + highest) // 2 if lowest <= highest else 0

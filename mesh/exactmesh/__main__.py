@@ -1,6 +1,8 @@
 """``python -m exactmesh`` is the command ``exactmesh``."""
 
+import sys
+
 from exactmesh.cli import main
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,160 +1,41 @@
-"""The two sides of a new segment: the polygons that it leaves where it crossed edges, triangulated anew.
+"""The polygons on the two sides of a new segment, where it crossed edges, triangulated anew.
 
-A march along the segment collects the edges that it crosses and the two chains of edges that are left when those go.
-Every vertex of a chain sees the segment, which makes the constrained Delaunay triangulation of its polygon simple: the
-third corner of the triangle at the base is the vertex of the chain that is in conflict with no other, and the rest
-falls into two polygons of the same kind [Anglada 1997].
+Every vertex of such a polygon sees the segment, its base. That makes the constrained Delaunay triangulation simple: the
+triangle at the base has its third corner at the vertex whose circle with the base is empty of all others, visible or
+not, and what is left are two polygons of the same kind. To look for that vertex takes linear time in each, which is
+near-linear in all for the cavities that occur, and quadratic for some [Anglada 1997]. Where it becomes too much, the
+vertices are inserted one by one in random order instead, each into the edge that spans its place, with flips
+[Shewchuk 2015].
 """
 
-from typing import NamedTuple
+import math
 
-import numpy as np
-import numpy.typing as npt
-
-from exactkernel.context import Context
-from exactkernel.incircle import incircle_perturbed_adaptive
+from exactkernel.expansions import two_diff
 from exactkernel.jit import jit, jit_inline
-from exactkernel.orient2d import orient2d_adaptive
-from exactkernel.types import FloatArray
-from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin
+from exactkernel.orient2d import products_difference
+from exactmesh.edgealgebra import EdgeArray, dest, left_next, link_ring, origin, swap
+from exactmesh.plane import Plane, conflict, orient
 
-__all__ = ["Plane", "Workspace", "fill", "march", "orient", "split_along", "toward"]
+__all__ = ["split_along"]
 
-
-class Plane(NamedTuple):
-    """A triangulation of the plane under work.
-
-    Attributes:
-        k: for predicates on ``xy``.
-        xy: the coordinates, flat.
-        ring, org: the quad-edge; faces are triangles, those outside the hull have a corner at the ghost vertex.
-        spoke: an edge that leaves each vertex.
-        fixed: whether each edge is constrained.
-        ghost: the ghost vertex.
-    """
-
-    k: Context
-    xy: FloatArray
-    ring: EdgeArray
-    org: EdgeArray
-    spoke: EdgeArray
-    fixed: npt.NDArray[np.bool_]
-    ghost: int
+_PATIENCE = 48  # so many looks at each vertex, on the average, before chance takes over
+_SMALL = 32  # polygons too small for that
 
 
-class Workspace(NamedTuple):
-    """Scratch space, an entry for every vertex at least.
-
-    Attributes:
-        crossed: the edges that a march crossed, as edge numbers: free for new use.
-        left, right: the chains beside it.
-        stack: three entries for each polygon that waits.
-    """
-
-    crossed: EdgeArray
-    left: EdgeArray
-    right: EdgeArray
-    stack: EdgeArray
-
-
-@jit_inline
-def orient(plane: Plane, a: int, b: int, c: int) -> int:
-    """Return orient2d of three vertices."""
-    xy = plane.xy
-    return orient2d_adaptive(plane.k, xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], xy[2 * c], xy[2 * c + 1])
-
-
-@jit_inline
-def conflict(plane: Plane, a: int, b: int, c: int, d: int) -> bool:
-    """Tell whether d lies in the perturbed circle of a, b, c, counterclockwise."""
-    xy = plane.xy
-    ax, ay, bx, by = xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1]
-    cx, cy, dx, dy = xy[2 * c], xy[2 * c + 1], xy[2 * d], xy[2 * d + 1]
-    return incircle_perturbed_adaptive(plane.k, ax, ay, bx, by, cx, cy, dx, dy) > 0
-
-
-@jit_inline
-def is_ahead(xy: FloatArray, a: int, b: int, v: int) -> bool:
-    """Tell whether v, on the line of a and b, is on the side of b from a."""
-    if xy[2 * a] != xy[2 * b]:
-        return bool((xy[2 * v] > xy[2 * a]) == (xy[2 * b] > xy[2 * a]))
-    return bool((xy[2 * v + 1] > xy[2 * a + 1]) == (xy[2 * b + 1] > xy[2 * a + 1]))
-
-
-@jit
-def toward(plane: Plane, a: int, b: int) -> tuple[int, bool]:
-    """Return (edge, True) if an edge leaves a straight toward b, else (e, False): b lies in the wedge from e to onext(e).
-
-    b is another vertex of the same triangulation of a convex hull.
-    """
-    ring, org = plane.ring, plane.org
-    e = int(plane.spoke[a])
-    v = dest(org, e)
-    side = 0 if v == plane.ghost else orient(plane, a, b, v)
-    while True:
-        if side == 0 and v != plane.ghost and is_ahead(plane.xy, a, b, v):
-            return e, True
-        f = int(ring[e])
-        w = dest(org, f)
-        next_side = 0 if w == plane.ghost else orient(plane, a, b, w)
-        if side < 0 and next_side > 0:
-            return e, False
-        e, v, side = f, w, next_side
-
-
-@jit
-def march(plane: Plane, work: Workspace, e: int, b: int) -> tuple[int, int, int, int]:
-    """Walk from the origin a of e, across the triangle on its left, toward b, until a vertex lies on the way.
-
-    Returns (that vertex, edges crossed, edges in the left chain, in the right chain), or (-1 - edge, 0, 0, 0) for a
-    fixed edge in the way. The left chain is passed from a on, its edges lead back to a; those of the right one lead
-    away from it. Both have the crossed triangles on their left.
-    """
-    ring, org = plane.ring, plane.org
-    a = origin(org, e)
-    c = left_next(ring, e)  # the edge to be crossed, from right to left
-    crossed, lefts, rights = 0, 1, 1
-    work.right[0] = e
-    work.left[0] = left_next(ring, c)
-    while True:
-        if plane.fixed[c >> 2]:
-            return -1 - (c >> 2), 0, 0, 0
-        work.crossed[crossed] = c >> 2
-        crossed += 1
-        f = left_next(ring, c ^ 2)
-        g = left_next(ring, f)
-        x = dest(org, f)
-        side = 0 if x == b else orient(plane, a, b, x)
-        if side >= 0:
-            work.left[lefts] = g
-            lefts += 1
-            c = f
-        if side <= 0:
-            work.right[rights] = f
-            rights += 1
-            c = g
-        if side == 0:
-            return x, crossed, lefts, rights
+# New edges take their numbers from plane.crossed, from the last one, ``free``, downwards. A polygon lies on the left of
+# its base, an edge from p0 to the last of p0, p1, .. pn, and of its chain:
+#
+#         p2 ------ p3
+#         /           \          chain[i] leads from p(i+1) to p(i)
+#        p1            \
+#         \             \
+#         p0 ---base---> p4
 
 
 @jit_inline
 def corner(org: EdgeArray, chain: EdgeArray, i: int) -> int:
-    """Return vertex i of a chain, whose edge i leads from vertex i + 1 back to vertex i."""
+    """Return p(i)."""
     return dest(org, chain[0]) if i == 0 else origin(org, chain[i - 1])
-
-
-@jit
-def apex(plane: Plane, chain: EdgeArray, i: int, j: int) -> int:
-    """Return the vertex between i and j that no other is in conflict with, at the base from i to j."""
-    org = plane.org
-    a, b = corner(org, chain, i), corner(org, chain, j)
-    best = i + 1
-    c = corner(org, chain, best)
-    for m in range(i + 2, j):
-        d = corner(org, chain, m)
-        if d != c and conflict(plane, a, b, c, d):
-            best, c = m, d
-    return best
 
 
 @jit_inline
@@ -166,51 +47,195 @@ def new_edge(org: EdgeArray, edge: int, start: int, end: int) -> int:
     return e
 
 
-@jit
-def fill(plane: Plane, work: Workspace, chain: EdgeArray, base: int, length: int, free: int) -> int:
-    """Triangulate the polygon of the base, on its left, and the chain of that length; return the next free edge.
+@jit_inline
+def apex(plane: Plane, chain: EdgeArray, i: int, j: int) -> int:
+    """Return the vertex between p(i) and p(j) whose circle with these two is empty of the others."""
+    a, b, c = corner(plane.org, chain, i), corner(plane.org, chain, j), corner(plane.org, chain, i + 1)
+    best = i + 1
+    for m in range(i + 2, j):
+        d = corner(plane.org, chain, m)
+        if d != c and conflict(plane, a, b, c, d):
+            best, c = m, d
+    return best
 
-        p2 ------ p3
-        /           \\          chain[i] leads from p(i+1) to p(i), the base from p0 to the last;
-       p1            \\         all have the polygon on their left
-        \\             \\
-        p0 ---base---> p4
+
+@jit_inline
+def halve(plane: Plane, chain: EdgeArray, i: int, j: int, m: int, base: int, free: int) -> tuple[int, int, int]:
+    """Make the triangle of the base p(i) p(j) and p(m); return (base of the rest at p(i) p(m), at p(m) p(j), free).
+
+    The bases are -1 where nothing is left: there the triangle is at the chain.
     """
-    ring, org, stack = plane.ring, plane.org, work.stack
+    org = plane.org
+    near = far = -1
+    f, g = chain[j - 1], chain[i]
+    if m > i + 1:
+        near = new_edge(org, plane.crossed[free], corner(org, chain, i), corner(org, chain, m))
+        free -= 1
+        g = near ^ 2
+    if m < j - 1:
+        far = new_edge(org, plane.crossed[free], corner(org, chain, m), corner(org, chain, j))
+        free -= 1
+        f = far ^ 2
+    link_ring(plane.ring, base, f)
+    link_ring(plane.ring, f, g)
+    link_ring(plane.ring, g, base)
+    return near, far, free
+
+
+@jit_inline
+def fill_by_search(plane: Plane, chain: EdgeArray, base: int, length: int, free: int, patience: int) -> bool:
+    """Triangulate a polygon from its base on; tell whether it worked before patience was at its end."""
+    stack = plane.stack
     stack[0], stack[1], stack[2] = 0, length, base
     height = 3
     while height:
         height -= 3
         i, j, e = stack[height], stack[height + 1], stack[height + 2]
+        patience -= j - i
+        if patience < 0:
+            return False
         m = apex(plane, chain, i, j)
-        f, g = chain[j - 1], chain[i]
-        if m < j - 1:
-            f = new_edge(org, work.crossed[free], corner(org, chain, j), corner(org, chain, m))
-            free += 1
-            stack[height], stack[height + 1], stack[height + 2] = m, j, f ^ 2
+        near, far, free = halve(plane, chain, i, j, m, e, free)
+        if far >= 0:
+            stack[height], stack[height + 1], stack[height + 2] = m, j, far
             height += 3
-        if m > i + 1:
-            g = new_edge(org, work.crossed[free], corner(org, chain, m), corner(org, chain, i))
-            free += 1
-            stack[height], stack[height + 1], stack[height + 2] = i, m, g ^ 2
+        if near >= 0:
+            stack[height], stack[height + 1], stack[height + 2] = i, m, near
             height += 3
-        link_ring(ring, e, f)
-        link_ring(ring, f, g)
-        link_ring(ring, g, e)
-    return free
+    return True
 
 
 @jit
-def split_along(plane: Plane, work: Workspace, a: int, b: int, lefts: int, rights: int) -> int:
-    """Replace the edges that a march crossed by the edge from a to b and the Delaunay edges beside it; return that edge."""
-    left, right = work.left, work.right
-    for i in range(rights // 2):
+def is_nearer(plane: Plane, chain: EdgeArray, length: int, i: int, j: int) -> bool:
+    """Tell whether p(i) is nearer to the base than p(j): exactly in the window of the coordinates, else about.
+
+    Rounded distances would do for most polygons; but vertices rounded onto one slanted line are told apart by nothing
+    except what was rounded off, and a wrong order costs a search through all of them.
+    """
+    xy, k = plane.xy, plane.k
+    a, b = corner(plane.org, chain, 0), corner(plane.org, chain, length)
+    u, v = corner(plane.org, chain, i), corner(plane.org, chain, j)
+    left = (xy[2 * b] - xy[2 * a]) * (xy[2 * u + 1] - xy[2 * v + 1])
+    right = (xy[2 * b + 1] - xy[2 * a + 1]) * (xy[2 * u] - xy[2 * v])
+    difference = left - right
+    if k.orient2d_bound == math.inf or abs(difference) > k.orient2d_bound * (abs(left) + abs(right)):
+        return bool(difference < 0.0)  # two differences, two products: the filter of orient2d
+    p, p_tail = two_diff(xy[2 * b], xy[2 * a])
+    q, q_tail = two_diff(xy[2 * u + 1], xy[2 * v + 1])
+    r, r_tail = two_diff(xy[2 * b + 1], xy[2 * a + 1])
+    s, s_tail = two_diff(xy[2 * u], xy[2 * v])
+    return (products_difference(p, p_tail, q, q_tail, r, r_tail, s, s_tail, k.scratch) & 3) == 0
+
+
+@jit
+def heuristic_order(plane: Plane, chain: EdgeArray, length: int) -> None:
+    """Write stack[3 k], the vertex to insert in turn k = 1 .. n - 1, and for each i the two that it comes between.
+
+    From the last to the first they are taken out at random, but none that is then nearer to the base than both its
+    neighbors: so what is left has the shape that the insertion needs, wherever distances are compared exactly.
+    """
+    stack = plane.stack
+    for i in range(length + 1):
+        stack[3 * i], stack[3 * i + 1], stack[3 * i + 2] = i, i - 1, i + 1
+    state = 1
+    for turn in range(length - 1, 0, -1):
+        while True:
+            state = (1103515245 * state + 12345) & 0x7FFFFFFF
+            chosen = 1 + (state >> 8) % turn
+            i = stack[3 * chosen]
+            before, after = stack[3 * i + 1], stack[3 * i + 2]
+            if turn == 1 or not (
+                is_nearer(plane, chain, length, i, before) and is_nearer(plane, chain, length, i, after)
+            ):
+                break
+        stack[3 * chosen], stack[3 * turn] = stack[3 * turn], i
+        stack[3 * before + 2], stack[3 * after + 1] = after, before
+
+
+@jit
+def legalize_fan(plane: Plane, e: int, u: int) -> None:
+    """Flip loose edges opposite to u, from e on, where u has come in between the two ends of e."""
+    ring, org = plane.ring, plane.org
+    last = left_next(ring, e)
+    while True:
+        beyond = left_next(ring, e ^ 2)
+        a, b = origin(org, e), dest(org, e)
+        if plane.loose[e >> 2] and (orient(plane, a, b, u) <= 0 or conflict(plane, b, a, dest(org, beyond), u)):
+            swap(ring, org, e)
+            e = beyond
+            continue
+        spoke = left_next(ring, e)
+        if spoke == last:
+            return
+        e = left_next(ring, spoke ^ 2)
+
+
+@jit
+def is_delaunay(plane: Plane, e: int) -> bool:
+    """Tell whether the triangles on both sides of e are counterclockwise, and not in conflict."""
+    ring, org = plane.ring, plane.org
+    a, b = origin(org, e), dest(org, e)
+    c, d = dest(org, left_next(ring, e)), dest(org, left_next(ring, e ^ 2))
+    return orient(plane, a, b, c) > 0 and orient(plane, b, a, d) > 0 and not conflict(plane, a, b, c, d)
+
+
+@jit
+def fill_by_chance(plane: Plane, chain: EdgeArray, base: int, length: int, free: int) -> bool:
+    """Triangulate a polygon by insertion in random order; tell whether it worked, which is checked.
+
+    What is not yet triangulated are pockets between the chain and an edge; the next vertex of a pocket and that edge
+    make a triangle, which leaves two pockets.
+    """
+    ring, first = plane.ring, free
+    heuristic_order(plane, chain, length)
+    link_ring(ring, base, chain[length - 1])
+    for i in range(length - 1, 0, -1):
+        link_ring(ring, chain[i], chain[i - 1])
+    link_ring(ring, chain[0], base)
+    for turn in range(1, length):
+        m = plane.stack[3 * turn]
+        i, j = plane.stack[3 * m + 1], plane.stack[3 * m + 2]
+        e = left_next(ring, chain[i])
+        near, far, free = halve(plane, chain, i, j, m, e, free)
+        if near >= 0:
+            link_ring(ring, near, chain[m - 1])
+            link_ring(ring, chain[i], near)
+        if far >= 0:
+            link_ring(ring, far, chain[j - 1])
+            link_ring(ring, chain[m], far)
+        if e != base:
+            plane.loose[e >> 2] = True
+            legalize_fan(plane, e, corner(plane.org, chain, m))
+    worked = True
+    for i in range(free + 1, first + 1):
+        plane.loose[plane.crossed[i]] = False
+        worked = worked and is_delaunay(plane, 4 * plane.crossed[i])
+    return worked
+
+
+@jit
+def fill_by_chance_or_else(plane: Plane, chain: EdgeArray, base: int, length: int, free: int) -> None:
+    """Triangulate a polygon for which searching takes too long."""
+    if not fill_by_chance(plane, chain, base, length, free):
+        fill_by_search(plane, chain, base, length, free, length * length)
+
+
+@jit_inline
+def split_along(plane: Plane, a: int, b: int, crossed: int, lefts: int, rights: int) -> int:
+    """Replace the edges that the march from a to b crossed by ab and Delaunay edges beside it; return ab."""
+    left, right, org = plane.left, plane.right, plane.org
+    for i in range(rights // 2):  # now it leads back to b
         right[i], right[rights - 1 - i] = right[rights - 1 - i], right[i]
-    base = new_edge(plane.org, work.crossed[0], a, b)
-    free = fill(plane, work, left, base, lefts, 1)
-    fill(plane, work, right, base ^ 2, rights, free)
-    for i in range(lefts):
-        plane.spoke[origin(plane.org, left[i])] = left[i]
-    for i in range(rights):
-        plane.spoke[origin(plane.org, right[i])] = right[i]
+    free = crossed - 1
+    base = new_edge(org, plane.crossed[free], a, b)
+    free -= 1
+    chain, length = left, lefts
+    for side in range(2):
+        patience = _PATIENCE * length if length > _SMALL else length * length
+        if not fill_by_search(plane, chain, base ^ 2 * side, length, free, patience):
+            fill_by_chance_or_else(plane, chain, base ^ 2 * side, length, free)
+        free -= length - 2
+        for i in range(length):
+            plane.spoke[origin(org, chain[i])] = chain[i]
+        chain, length = right, rights
     return base

@@ -5,21 +5,16 @@ Imports stand where they are needed, so that ``--help`` and a wrong path answer 
 
 import errno
 import os
-import re
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Annotated, BinaryIO
+from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
 
 import typer
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    from exactkernel.types import FloatArray, IntArray
     from exactmesh.io import Mesh
-    from exactmesh.triangulation import Triangulation
+    from exactmesh.pslg import PSLG, Carve
 
 __all__ = ["app", "main"]
 
@@ -27,7 +22,7 @@ _VIOLATION = 1
 _BAD_INPUT = 2
 _INTERRUPTED = 130
 _READER_GONE = 141  # as a shell reports SIGPIPE: neither yes nor no
-_DUPLICATES_NAMED = 3
+_KEEP_ALL = "none"
 
 #: click's base of wrong options, missing arguments and so on; typer may carry its own copy of click.
 _UsageError: type[typer.BadParameter] = typer.BadParameter.__mro__[1]
@@ -38,7 +33,7 @@ app = typer.Typer(
     help="Planar meshes whose every answer can be checked, and the checker for everybody else's.",
 )
 
-_Mesh = Annotated[str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node or .npz file.")]
+_Mesh = Annotated[str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly or .npz.")]
 
 
 def _print_version(wanted: bool) -> None:
@@ -60,96 +55,53 @@ def _common(
 
 @app.command()
 def triangulate(
-    source: Annotated[str, typer.Argument(metavar="IN", help="Points: .node, .csv or .npz.")],
+    source: Annotated[
+        str, typer.Argument(metavar="IN", help="A graph: .poly, .geojson, .json; or points: .node, .csv, .npz.")
+    ],
     output: Annotated[
         str | None,
-        typer.Option("-o", "--output", metavar="OUT", help=".node and .ele, or .npz; x.node gives x.1.node."),
+        typer.Option("-o", "--output", metavar="OUT", help=".node, .ele and .poly, or .npz; x.poly gives x.1.node."),
+    ] = None,
+    carve: Annotated[
+        str | None, typer.Option(metavar="seeds|even-odd|none", help="Which faces of a graph to keep; none: the hull.")
+    ] = None,
+    crossings: Annotated[
+        str | None, typer.Option(metavar="error|split", help="What to do about segments that cross; default: error.")
     ] = None,
     seed: Annotated[int, typer.Option(help="Of the insertion order; the triangulation does not depend on it.")] = 0,
 ) -> None:
-    """Write the Delaunay triangulation of the points in IN."""
+    """Write the (constrained) Delaunay triangulation of what is in IN."""
     _require_file(source)
-    target = _next_name(source) if output is None else output
+    from exactmesh.constrain import Crossings
+    from exactmesh.io import holds_segments
+    from exactmesh.triangulate_file import files_of, next_name, triangulate_graph, triangulate_points
+
+    target = next_name(source) if output is None else output
     if os.path.splitext(target)[1] not in (".node", ".ele", ".npz"):
         raise typer.BadParameter(f"{target}: triangles go into .node and .ele, or .npz", param_hint="-o")
-    if _files_of(source) & _files_of(target):
+    if files_of(source) & files_of(target):
         raise typer.BadParameter(f"{target}: would overwrite the input", param_hint="-o")
-    from exactkernel.jit import is_cache_warm
-    from exactmesh.delaunay import delaunay
-    from exactmesh.errors import ExactMeshError, FileFormatError
-    from exactmesh.io import read_points, write
-    from exactmesh.progress import working
-
-    with working(f"reading {source}"):
-        points = read_points(source)
-    with working("triangulating", compiling=not is_cache_warm()) as progress:
-        try:
-            triangulation = delaunay(points.points, seed=seed, progress=progress)
-        except ExactMeshError as error:
-            raise FileFormatError(str(error), path=source) from error
-    duplicates = _duplicates(triangulation, points.base)
-    with working(f"writing {target}"):
-        mesh = _carried_over(points, triangulation, target)
-        paths = write(target, mesh)
-    if duplicates is not None:
-        typer.echo(duplicates)
-    typer.echo(f"{len(triangulation.points)} points, {len(triangulation.triangles)} triangles: {' '.join(paths)}")
+    if holds_segments(source):
+        treatment = Crossings.ERROR if crossings is None else Crossings(crossings)
+        lines = triangulate_graph(source, target, seed, _rule_of(carve), treatment)
+    elif carve is not None or crossings is not None:
+        hint = "--crossings" if carve is None else "--carve"
+        raise typer.BadParameter(f"{source} holds points, and no segments", param_hint=hint)
+    else:
+        lines = triangulate_points(source, target, seed)
+    for line in lines:
+        typer.echo(line)
 
 
-def _files_of(path: str) -> set[str]:
-    """The files that are read or written under this name: of Triangle's formats, all with the same stem."""
-    stem, suffix = os.path.splitext(path)
-    names = [f"{stem}.node", f"{stem}.ele"] if suffix in (".node", ".ele") else [path]
-    return {os.path.realpath(name) for name in names}
+def _rule_of(carve: str | None) -> "Carve | bool":
+    """What to carve by; True: the file's own rule, False: nothing."""
+    from exactmesh.pslg import Carve
 
-
-def _next_name(source: str) -> str:
-    """The name of the output as Triangle gives it: x.node to x.1.node, x.1.node to x.2.node."""
-    stem = os.path.splitext(source)[0]
-    numbered = re.fullmatch(r"(.+)\.([0-9]+)", stem)
-    return f"{numbered[1]}.{int(numbered[2]) + 1}.node" if numbered else f"{stem}.1.node"
-
-
-def _first_of_each(triangulation: "Triangulation") -> "npt.NDArray[np.intp]":
-    """For each vertex the first input point that it stands for: vertices are numbered as their points come."""
-    import numpy as np
-
-    return np.flatnonzero(np.diff(np.maximum.accumulate(triangulation.representative), prepend=-1))
-
-
-def _carried_over(source: "Mesh", triangulation: "Triangulation", target: str) -> "Mesh":
-    """The triangulation as a mesh, with the attributes and markers of the points that were kept.
-
-    Neighbors and edges come along where a .neigh or .edge file of an older mesh would be left beside the target.
-    """
-    from exactmesh.io import Mesh
-
-    first, stem = _first_of_each(triangulation), os.path.splitext(target)[0]
-    attributes, markers = source.point_attributes, source.point_markers
-    return Mesh(
-        triangulation.points,
-        triangles=triangulation.triangles,
-        neighbors=triangulation.neighbors if os.path.exists(f"{stem}.neigh") else None,
-        edges=triangulation.edges if os.path.exists(f"{stem}.edge") else None,
-        point_attributes=None if attributes is None else attributes[first],
-        point_markers=None if markers is None else markers[first],
-        base=source.base,
-    )
-
-
-def _duplicates(triangulation: "Triangulation", base: int) -> str | None:
-    """One line that names points which were left out because another has their place; None if there are none."""
-    import numpy as np
-
-    total = len(triangulation.representative)
-    if len(triangulation.points) == total:
-        return None
-    first = _first_of_each(triangulation)
-    left_out = np.delete(np.arange(total), first)
-    kept = first[triangulation.representative[left_out[:_DUPLICATES_NAMED]]]
-    named = ", ".join(f"{base + i} of {base + k}" for i, k in zip(left_out, kept, strict=False))
-    more = ", ..." if len(left_out) > _DUPLICATES_NAMED else ""
-    return f"{len(left_out)} of {total} points left out as duplicates: {named}{more}"
+    if carve is None or carve == _KEEP_ALL:
+        return carve is None
+    if carve not in tuple(Carve):
+        raise typer.BadParameter(f"{carve!r}; choose from {', '.join((*Carve, _KEEP_ALL))}", param_hint="--carve")
+    return Carve(carve)
 
 
 @app.command()
@@ -157,7 +109,13 @@ def verify(
     mesh: _Mesh,
     claim: Annotated[
         list[str] | None,
-        typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all up to delaunay."),
+        typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all that fits."),
+    ] = None,
+    domain: Annotated[
+        str | None, typer.Option(metavar="FILE", help="What MESH should cover: .poly, .geojson or .json.")
+    ] = None,
+    carve: Annotated[
+        str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
     ] = None,
     orientation: Annotated[str, typer.Option(metavar="ccw|any", help="How triangles may be listed.")] = "ccw",
     json: Annotated[
@@ -166,24 +124,45 @@ def verify(
 ) -> None:
     """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
     _require_file(mesh)
+    if domain is None and carve is not None:
+        raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
     from exactkernel.jit import is_cache_warm
     from exactmesh.progress import working
     from exactmesh.verify import verify as check
-    from exactmesh.verify.properties import claimed_properties, orientation_of
 
-    claims, orders = claimed_properties(claim or None), orientation_of(orientation)
-    points, triangles, base = _triangles_of(mesh)
+    content, graph = _triangles_of(mesh), None if domain is None else _domain_of(domain, carve)
+    assert content.triangles is not None
+    given: dict[str, Any] = {"segments": content.segments} if content.segments is not None else {}
+    if graph is not None:
+        given = {"domain": graph}
+        if len(graph.regions) and content.triangle_attributes is not None:
+            given["labels"] = content.triangle_attributes[:, -1]
     with working(f"verifying {mesh}", compiling=not is_cache_warm()):
-        report = check(points, triangles, claims=claims, orientation=orders)
+        report = check(content.points, content.triangles, claims=claim or None, orientation=orientation, **given)
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))
-    if base and json != "-" and report.violations:
-        typer.echo(f"(Numbers in this report count from 0, those in the files from {base}.)")
+    if content.base and json != "-" and report.violations:
+        typer.echo(f"(Numbers in this report count from 0, those in the files from {content.base}.)")
+    if content.segments is not None and graph is None and json != "-" and not report.ok:
+        typer.echo("(Of a mesh with segments, --domain FILE says what it should cover; without, that is the hull.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 
-def _triangles_of(path: str) -> "tuple[FloatArray, IntArray, int]":
+def _domain_of(path: str, carve: str | None) -> "PSLG":
+    _require_file(path)
+    from dataclasses import replace
+
+    from exactmesh.io import read_pslg
+    from exactmesh.progress import working
+    from exactmesh.pslg import Carve
+
+    with working(f"reading {path}"):
+        pslg = read_pslg(path)
+        return pslg if carve is None else replace(pslg, rule=Carve(carve))
+
+
+def _triangles_of(path: str) -> "Mesh":
     from exactmesh.errors import FileFormatError
     from exactmesh.io import read_triangles
     from exactmesh.progress import working
@@ -192,7 +171,7 @@ def _triangles_of(path: str) -> "tuple[FloatArray, IntArray, int]":
         mesh = read_triangles(path)
     if mesh.triangles is None:
         raise FileFormatError("there are no triangles on file, only points", path=path)
-    return mesh.points, mesh.triangles, mesh.base
+    return mesh
 
 
 def _write_text(path: str, text: str) -> None:
@@ -221,7 +200,8 @@ def plot(
     with working(f"drawing {mesh}"):
         content = read_triangles(mesh)
         triangles = np.zeros((0, 3), dtype=np.int32) if content.triangles is None else content.triangles
-        plot_mesh(content.points, triangles, output, title=os.path.basename(mesh) if title is None else title)
+        caption = os.path.basename(mesh) if title is None else title
+        plot_mesh(content.points, triangles, output, segments=content.segments, title=caption)
     typer.echo(output)
 
 

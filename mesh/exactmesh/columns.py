@@ -5,13 +5,27 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.arrays import exact_doubles, unrounded_array
 from exactkernel.errors import CoordinateError, NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.errors import TopologyError
 
-__all__ = ["MarkerArray", "array_of", "attributes_of", "frozen", "indices_of", "integers", "markers_of", "rows_for"]
+__all__ = [
+    "MarkerArray",
+    "array_of",
+    "attributes_of",
+    "frozen",
+    "indices_of",
+    "integers",
+    "markers_of",
+    "regions_of",
+    "rows_for",
+]
 
 MarkerArray = npt.NDArray[np.int64]
+
+_UNLIMITED = -1.0  # area of a region that is given without one
+
 A = TypeVar("A", bound=npt.NDArray[np.generic])
 
 
@@ -25,11 +39,18 @@ def frozen(array: A) -> A:
 
 
 def array_of(values: npt.ArrayLike, name: str) -> npt.NDArray[np.generic]:
-    """Return the values as an array of whatever type; ShapeError if they are ragged."""
+    """Return the values as an array of whatever type; ShapeError if they are ragged, or some are masked."""
+    _refuse_masked(values, name)
     try:
         return np.asarray(values)
     except ValueError as error:
         raise ShapeError(f"{name} is no array: {error}") from None
+
+
+def _refuse_masked(values: npt.ArrayLike | None, name: str) -> None:
+    """numpy drops a mask silently, and with it the fact that a value is missing."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
+        raise ShapeError(f"{name} has masked values")
 
 
 def integers(values: npt.ArrayLike, name: str) -> MarkerArray:
@@ -96,6 +117,20 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
     if array is None:
         return None
     if len(array) != count:
-        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments"}[name[0]]
+        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments", "r": "rings"}[name[0]]
         raise ShapeError(f"{name} has {len(array)} rows for {'no' if count is None else count} {of}")
     return array
+
+
+def regions_of(values: npt.ArrayLike | None, name: str) -> FloatArray:
+    """Return rows x, y, attribute, area, (r, 4); rows of three get an area of -1: unlimited. NaN and infinity pass."""
+    _refuse_masked(values, name)
+    array = unrounded_array(() if values is None else values, name)
+    if array.size == 0 and array.ndim <= 2:
+        return np.zeros((0, 4))
+    if array.ndim != 2 or array.shape[1] not in (3, 4):
+        raise ShapeError(f"{name} has shape {array.shape}; expected (r, 4): x, y, attribute, area; or (r, 3)")
+    places, bounds = exact_doubles(array[:, :2], name), exact_doubles(array[:, [2, -1]], name)
+    if array.shape[1] == 3:
+        bounds[:, 1] = _UNLIMITED
+    return np.hstack([places, bounds])

@@ -1,13 +1,19 @@
 """What follows from an array of triangles: neighbors, edges, hull, and the rings of its quad-edge."""
 
 import numpy as np
+import numpy.typing as npt
 
-from exactkernel.jit import jit
+from exactkernel.context import Context, scaled_into_window
+from exactkernel.jit import jit, jit_inline
+from exactkernel.orient2d import orient2d_adaptive
+from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.edgealgebra import EdgeArray, link_ring
+from exactmesh.edgealgebra import EdgeArray, dest, link_ring, origin, splice
 from exactmesh.errors import TopologyError
 
-__all__ = ["check_corners", "check_neighbors", "edges_of", "hull_of", "neighbors_of", "rings_of"]
+BoolArray = npt.NDArray[np.bool_]
+
+__all__ = ["check_corners", "check_neighbors", "edges_of", "loops_of", "neighbors_of", "planar_rings_of", "rings_of"]
 
 
 def check_corners(triangles: IntArray) -> None:
@@ -96,22 +102,76 @@ def edges_of(triangles: IntArray, neighbors: IntArray) -> IntArray:
 
 
 @jit
-def _follow(after: IntArray, cycle: IntArray) -> None:
-    """Fill the cycle from its first vertex on."""
-    for i in range(1, len(cycle)):
-        cycle[i] = after[cycle[i - 1]]
+def _next_on_boundary(triangles: IntArray, neighbors: IntArray, side: int) -> int:
+    """Return the open side that follows an open one round the same fan; side 3 t + i is opposite corner i."""
+    t, i = side // 3, side % 3
+    pivot = triangles[t, (i + 2) % 3]
+    i = (i + 1) % 3
+    while neighbors[t, i] >= 0:
+        t, i = neighbors[t, i], 0
+        while triangles[t, (i + 1) % 3] != pivot:
+            i += 1
+    return 3 * t + i
 
 
-def hull_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> IntArray:
-    """Return the boundary cycle, int32, counterclockwise from its lexicographically smallest vertex. O(m)."""
-    rows, corners = np.nonzero(neighbors < 0)
-    starts, ends = triangles[rows, (corners + 1) % 3], triangles[rows, (corners + 2) % 3]
-    after = np.empty(len(points), dtype=np.int32)
-    after[starts] = ends
-    cycle = np.empty(len(starts), dtype=np.int32)
-    cycle[0] = starts[np.lexsort((points[starts, 1], points[starts, 0]))[0]]
-    _follow(after, cycle)
-    return cycle
+@jit
+def _trace_loops(
+    triangles: IntArray, neighbors: IntArray, open_: IntArray, seen: BoolArray, place: IntArray, path: IntArray,
+    loops: IntArray, starts: IntArray,
+) -> int:  # fmt: skip
+    """Write the boundary as simple loops, one after the other, and where each starts; return how many there are.
+
+    ``open_`` are the sides without a neighbor, ``seen`` (of all sides) is False and ``place`` (of all vertices) -1. The
+    walk keeps the domain on its left; where it comes to a vertex again, it has closed a loop.
+    """
+    count = written = 0
+    for first in open_:
+        height, side = 0, first
+        while not seen[side]:
+            seen[side] = True
+            v = triangles[side // 3, (side + 1) % 3]
+            if place[v] >= 0:
+                height, count, written = _close(place, path, height, place[v], loops, starts, count, written)
+            place[v] = height
+            path[height] = v
+            height += 1
+            side = _next_on_boundary(triangles, neighbors, side)
+        if height:
+            height, count, written = _close(place, path, height, 0, loops, starts, count, written)
+    return count
+
+
+@jit
+def _close(
+    place: IntArray, path: IntArray, height: int, base: int, loops: IntArray, starts: IntArray, count: int, written: int
+) -> tuple[int, int, int]:
+    """Take what is on the path from base on as a loop; return (height of the path, loops, vertices written)."""
+    starts[count] = written
+    for i in range(base, height):
+        loops[written] = path[i]
+        place[path[i]] = -1
+        written += 1
+    return base, count + 1, written
+
+
+def loops_of(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> tuple[IntArray, ...]:
+    """Return the boundary as simple loops with the triangles on their left, int32 each. O(m).
+
+    Outer loops are counterclockwise, holes clockwise; loops that touch in a vertex are separate. Each starts with its
+    lexicographically smallest vertex, and they come in the order of those.
+    """
+    open_ = np.flatnonzero(neighbors.reshape(-1) < 0).astype(np.int32)
+    path, loops, starts = (np.empty(len(open_) + 1, dtype=np.int32) for _ in range(3))
+    seen, place = np.zeros(neighbors.size, dtype=np.bool_), np.full(len(points), -1, dtype=np.int32)
+    count = _trace_loops(triangles, neighbors, open_, seen, place, path, loops, starts)
+    starts[count] = len(open_)
+    rank = np.empty(len(points), dtype=np.int64)
+    on_loops = loops[: len(open_)]
+    order = np.lexsort((points[on_loops, 1], points[on_loops, 0]))
+    rank[on_loops[order]] = np.arange(len(open_))
+    parts = [loops[starts[i] : starts[i + 1]] for i in range(count)]
+    turned = [np.concatenate(np.split(part, [rank[part].argmin()])[::-1]) for part in parts]
+    return tuple(sorted(turned, key=lambda loop: (int(rank[loop[0]]), int(rank[loop[1]]))))
 
 
 @jit
@@ -163,4 +223,53 @@ def rings_of(triangles: IntArray, neighbors: IntArray) -> tuple[EdgeArray, EdgeA
     vertex = np.empty(2 * edges, dtype=np.int32)
     face = np.empty(2 * edges, dtype=np.int32)
     _fill_rings(triangles, neighbors, np.empty_like(neighbors), ring, vertex, face)
+    return ring, vertex, face
+
+
+@jit_inline
+def _is_between(k: Context, xy: FloatArray, o: int, a: int, p: int, b: int) -> bool:
+    """Tell whether, turning counterclockwise round o from a to b, one meets p; the three directions differ."""
+    ax, ay, bx, by, ox, oy = xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[o, 0], xy[o, 1]
+    from_a = orient2d_adaptive(k, ox, oy, ax, ay, xy[p, 0], xy[p, 1]) > 0
+    to_b = orient2d_adaptive(k, ox, oy, xy[p, 0], xy[p, 1], bx, by) > 0
+    return (from_a and to_b) if orient2d_adaptive(k, ox, oy, ax, ay, bx, by) > 0 else (from_a or to_b)
+
+
+@jit
+def _join_fans(k: Context, xy: FloatArray, ring: EdgeArray, vertex: EdgeArray, face: EdgeArray, gap: EdgeArray) -> None:
+    """Make one ring of the rings at each vertex, in the order of their directions.
+
+    ``gap`` (n,), all -1, becomes for each vertex on the boundary an edge that leaves it with OUTSIDE on its left.
+    """
+    for half in range(len(face)):
+        e = 2 * half
+        if face[(e ^ 3) >> 1] != -1:
+            continue
+        v = origin(vertex, e)
+        g = gap[v]
+        gap[v] = e
+        if g < 0:
+            continue
+        first = g
+        while not _is_between(k, xy, v, dest(vertex, g), dest(vertex, e), dest(vertex, ring[g])):
+            g = ring[g]
+            while face[(g ^ 3) >> 1] != -1:
+                g = ring[g]
+            if g == first:  # never, unless triangles overlap
+                break
+        splice(ring, g, e)
+
+
+@np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
+def planar_rings_of(
+    points: FloatArray, triangles: IntArray, neighbors: IntArray
+) -> tuple[EdgeArray, EdgeArray, EdgeArray]:
+    """Return what :func:`rings_of` does, with one ring at a vertex where the boundary meets itself.
+
+    O(m), and O(d^2) where d such pieces of the boundary meet.
+    """
+    ring, vertex, face = rings_of(triangles, neighbors)
+    xy, k = scaled_into_window(points)
+    _join_fans(k, xy, ring, vertex, face, np.full(len(points), -1, dtype=np.int32))
+    raise_if_interrupted()
     return ring, vertex, face

@@ -1,4 +1,4 @@
-"""The demonstration: a hard point set and the course's five points, triangulated, verified and drawn."""
+"""The demonstration: a hard point set, a lake and the course's five points, triangulated, verified and drawn."""
 
 import os
 import time
@@ -13,16 +13,18 @@ from rich.text import Text
 
 from exactkernel.jit import is_cache_warm
 from exactkernel.types import FloatArray
+from exactmesh.constrain import constrained_delaunay
 from exactmesh.delaunay import delaunay
 from exactmesh.plot import PlotUnavailableError, plot_mesh
 from exactmesh.progress import COMPILING, working
+from exactmesh.pslg import PSLG
 from exactmesh.verify import Property, Verdict, verify
 
 if TYPE_CHECKING:
     from exactmesh.triangulation import Triangulation
     from exactmesh.verify import Report
 
-__all__ = ["course_points", "demo", "mosaic"]
+__all__ = ["course_points", "demo", "lake", "mosaic"]
 
 _STYLES = {Verdict.HOLDS: "green", Verdict.FAILS: "red", Verdict.UNDECIDED: "yellow"}
 
@@ -51,6 +53,36 @@ def mosaic() -> FloatArray:
     return np.concatenate([grid, *rings, sunflower, *spirals])
 
 
+def lake() -> PSLG:
+    """Return a lake with three islands, and seven dikes, some of which cross a shore.
+
+    But for the rounding of their ends the dikes would meet in one point: they cross in several, some 1e-16 apart.
+    """
+    islands = [(-3.5, 1.0, 1.0), (2.5, 2.0, 0.7), (2.0, -2.0, 1.1)]
+    shores = [_shore(0.0, 0.0, 5.0, 240), *(_shore(x, y, size, 80) for x, y, size in islands)]
+    middle, angles = np.array([-0.9, -0.7]), np.arange(7) * (np.pi / 7.0) + 0.1
+    reach = 2.2 * np.column_stack([np.cos(angles), np.sin(angles)])
+    dikes = np.stack([middle - reach, middle + reach], axis=1).reshape(-1, 2)
+    segments, count = [], 0
+    for shore in shores:
+        start = np.arange(len(shore))
+        segments.append(count + np.column_stack([start, np.roll(start, -1)]))
+        count += len(shore)
+    segments.append(count + np.arange(len(dikes)).reshape(-1, 2))
+    return PSLG(
+        np.concatenate([*shores, dikes]),
+        np.concatenate(segments),
+        segment_markers=np.repeat(np.arange(1, 6), [len(part) for part in segments]),
+        holes=[(x, y) for x, y, _ in islands],
+    )
+
+
+def _shore(x: float, y: float, size: float, count: int) -> FloatArray:
+    turn = np.arange(count) * (2.0 * np.pi / count)
+    radius = size * (1.0 + 0.12 * np.sin(5.0 * turn + x) + 0.06 * np.sin(11.0 * turn + y))
+    return np.column_stack([x + 1.6 * radius * np.cos(turn), y + radius * np.sin(turn)])
+
+
 @dataclass(frozen=True)
 class _Run:
     triangulation: "Triangulation"
@@ -59,19 +91,19 @@ class _Run:
 
 
 def demo(folder: str, console: Console) -> bool:
-    """Triangulate, verify and draw the two point sets; return whether both triangulations are what they claim.
+    """Triangulate, verify and draw the two point sets and the lake; return whether all are what they claim.
 
     Prints a table, and writes pictures into ``folder``, which is made if need be.
 
     Raises:
         OSError: the folder or a picture cannot be written.
     """
-    sets = {"mosaic": mosaic(), "course": course_points()}
+    sets: dict[str, FloatArray | PSLG] = {"mosaic": mosaic(), "lake": lake(), "course": course_points()}
     _warm_up(console)
     runs = {}
-    for name, points in sets.items():
+    for name, given in sets.items():
         with working(f"triangulating and verifying {name}"):
-            runs[name] = _run(points)
+            runs[name] = _run(given)
     console.print(_table(runs))
     _draw(runs, folder, console)
     return all(run.report.ok for run in runs.values())
@@ -88,11 +120,14 @@ def _warm_up(console: Console) -> None:
         console.print(f"Compiled in {time.perf_counter() - start:.1f} s; later runs start at once.")
 
 
-def _run(points: FloatArray) -> _Run:
+def _run(given: FloatArray | PSLG) -> _Run:
     start = time.perf_counter()
-    triangulation = delaunay(points)
+    if isinstance(given, PSLG):
+        triangulation = constrained_delaunay(given, crossings="split")
+    else:
+        triangulation = delaunay(given)
     middle = time.perf_counter()
-    report = verify(triangulation.points, triangulation.triangles)
+    report = verify(triangulation.points, triangulation.triangles, domain=triangulation.domain)
     return _Run(triangulation, report, (middle - start, time.perf_counter() - middle))
 
 
@@ -128,13 +163,22 @@ def _stages(report: "Report", predicate: str) -> str:
 
 
 def _draw(runs: Mapping[str, _Run], folder: str, console: Console) -> None:
-    titles = {"mosaic": "A grid, rings, a sunflower and spirals", "course": "The course's five points"}
+    titles = {
+        "mosaic": "A grid, rings, a sunflower and spirals",
+        "lake": "A lake, islands, and dikes that cross",
+        "course": "The course's five points",
+    }
     os.makedirs(folder, exist_ok=True)
     try:
         for name, run in runs.items():
             place = os.path.join(folder, f"{name}.png")
             with working(f"drawing {place}"):
-                plot_mesh(run.triangulation.points, run.triangulation.triangles, place, title=titles[name])
+                _plot(run.triangulation, place, titles[name])
             console.print(f"Picture: {place}", markup=False, highlight=False, soft_wrap=True)
     except PlotUnavailableError as error:
         console.print(f"No pictures: {error}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _plot(mesh: "Triangulation", place: str, title: str) -> None:
+    segments = mesh.segments if len(mesh.segments) else None
+    plot_mesh(mesh.points, mesh.triangles, place, segments=segments, title=title)

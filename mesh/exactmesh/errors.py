@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ChoiceError",
     "CollinearPointsError",
+    "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
     "DegenerateError",
@@ -24,12 +25,14 @@ __all__ = [
     "Fault",
     "FaultKind",
     "FileFormatError",
+    "GeometryError",
     "InadmissibleError",
     "NonFiniteError",
     "PSLGError",
     "SeedError",
     "ShapeError",
     "TooFewPointsError",
+    "TooManyCrossingsError",
     "TooManyPointsError",
     "TopologyError",
 ]
@@ -43,12 +46,20 @@ class TooFewPointsError(ExactMeshError):
     """Fewer than three points span no triangle."""
 
 
+class TooManyCrossingsError(ExactMeshError):
+    """So many segments meet that the answer would not fit into memory."""
+
+
 class TooManyPointsError(ExactMeshError):
     """More points than the edge numbers can hold."""
 
 
 class CollinearPointsError(ExactMeshError):
     """All points lie on one line, or are one point: there is no triangle."""
+
+
+class ConstrainedVertexError(ExactMeshError):
+    """A vertex cannot be deleted, for segments end in it or pass through it: ``indices`` names them."""
 
 
 class SeedError(ExactMeshError):
@@ -77,6 +88,10 @@ class FileFormatError(ExactMeshError):
         self.line = line
 
 
+class GeometryError(ExactMeshError):
+    """Geometry from elsewhere that is none of the plane, or that its format cannot hold."""
+
+
 class FaultKind(StrEnum):
     """What can be wrong with a planar straight line graph; the comments say what ``Fault.indices`` are."""
 
@@ -89,8 +104,10 @@ class FaultKind(StrEnum):
     REGION_NOT_FINITE = "region not finite"  # (region,)
     REGION_ON_SEGMENT = "region on a segment"  # (region, segment)
     REGION_OUTSIDE = "region outside"  # (region,)
-    NOT_CLOSED = "not closed"  # (segment,)
+    REGIONS_DISAGREE = "regions disagree"  # (first region, later one)
+    NOT_CLOSED = "not closed"  # (segment,), or () where there is none
     INCONSISTENT_PARITY = "inconsistent parity"  # (point,)
+    EMPTY_DOMAIN = "empty domain"  # ()
     RING_TOO_SHORT = "ring too short"  # (ring,)
     NOT_A_RING = "not a ring"  # (point,)
 
@@ -105,8 +122,10 @@ _REMEDIES = {
     FaultKind.REGION_NOT_FINITE: "give finite numbers; a negative area means unlimited",
     FaultKind.REGION_ON_SEGMENT: "move it into the face that it labels",
     FaultKind.REGION_OUTSIDE: "move it into the domain, or leave it out",
+    FaultKind.REGIONS_DISAGREE: "give them the same attribute and area, or a segment between them",
     FaultKind.NOT_CLOSED: "close the outline, or keep the hull with carve=False",
     FaultKind.INCONSISTENT_PARITY: "close the rings, or carve by seeds",
+    FaultKind.EMPTY_DOMAIN: "look at the rule and the holes, or keep the hull with carve=False",
     FaultKind.RING_TOO_SHORT: "a ring needs three vertices at different positions",
     FaultKind.NOT_A_RING: "in a union of rings each point is the end of two segments, or of none",
 }
@@ -129,13 +148,15 @@ class PSLGError(ExactMeshError):
     """A planar straight line graph with faults: all of them in ``faults``, by kind; the message names the first ones.
 
     ``indices`` are the first index of each fault of the first kind; ``path`` is the file that it came from, or None.
+    All indices count from 0; where the file counts from ``base`` 1, the message says so.
     """
 
-    def __init__(self, faults: Sequence[Fault], *, path: str | None = None) -> None:
+    def __init__(self, faults: Sequence[Fault], *, path: str | None = None, base: int = 0) -> None:
         place = "" if path is None else f"{path}: "
+        note = f" [numbers here count from 0, those in the file from {base}]" if base else ""
         super().__init__(
-            place + "; ".join(_summaries(faults)),
-            indices=[fault.indices[0] for fault in faults if fault.kind is faults[0].kind],
+            place + "; ".join(_summaries(faults)) + note,
+            indices=[i for fault in faults if fault.kind is faults[0].kind for i in fault.indices[:1]],
         )
         self.faults = tuple(faults)
         self.path = path

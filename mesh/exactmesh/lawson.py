@@ -17,15 +17,20 @@ from exactkernel.incircle import incircle_perturbed, incircle_perturbed_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
-from exactkernel.types import FloatArray, PointLike, Sign
+from exactkernel.types import FloatArray, IntArray, PointLike, Sign
+from exactmesh.along import edges_along
+from exactmesh.assembly import Constrained, Cut, Task, assembled, in_order
 from exactmesh.connectivity import neighbors_of, rings_of
+from exactmesh.constrain import plane_of
+from exactmesh.delaunay import Insertion
 from exactmesh.edgealgebra import EdgeArray, dest, left_next, origin, swap
 from exactmesh.errors import InadmissibleError, TooFewPointsError, TopologyError
 from exactmesh.extract import OUTER, triangles_of
 from exactmesh.ids import OUTSIDE
+from exactmesh.pslg import PSLG
 from exactmesh.quadedge import Edge, Primal
 from exactmesh.triangulation import Triangulation, work_of
-from exactmesh.verify import Property, verify
+from exactmesh.verify import Property, Report, verify
 
 __all__ = ["flip", "is_flippable", "is_locally_delaunay", "lawson"]
 
@@ -112,7 +117,7 @@ def flip_until_delaunay(
     xy: FloatArray,
     ring: EdgeArray,
     org: EdgeArray,
-    hull: npt.NDArray[np.bool_],
+    fixed: npt.NDArray[np.bool_],
     stack: EdgeArray,
     waiting: npt.NDArray[np.bool_],
     height: int,
@@ -120,7 +125,8 @@ def flip_until_delaunay(
 ) -> tuple[int, int]:
     """Test up to limit edges from the stack and flip those that fail; return (height of the stack, flips).
 
-    ``waiting[i]`` tells whether edge i is on the stack, so that it is there once at most. ``hull[i]`` are left alone.
+    ``waiting[i]`` tells whether edge i is on the stack, so that it is there once at most. Edges that are
+    ``fixed`` are left alone.
     """
     flips = 0
     for _ in range(limit):
@@ -129,7 +135,7 @@ def flip_until_delaunay(
         height -= 1
         i = stack[height]
         waiting[i] = False
-        if hull[i]:
+        if fixed[i]:
             continue
         e = 4 * i
         cd = left_next(ring, e)
@@ -155,32 +161,64 @@ def flip_until_delaunay(
 
 
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
-def _flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, hull: npt.NDArray[np.bool_]) -> int:
-    """Flip until every edge but those of the hull is locally Delaunay; return the number of flips."""
-    edges = len(hull)
+def _flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, fixed: npt.NDArray[np.bool_]) -> int:
+    """Flip until every edge but the fixed ones is locally Delaunay; return the number of flips."""
+    edges = len(fixed)
     stack, waiting = np.arange(edges, dtype=np.int32), np.ones(edges, dtype=np.bool_)
     height, flips, limit = edges, 0, chunk_size(k, _CHUNK)
     while height > 0:
-        height, more = flip_until_delaunay(k, xy, ring, org, hull, stack, waiting, height, limit)
+        height, more = flip_until_delaunay(k, xy, ring, org, fixed, stack, waiting, height, limit)
         flips += int(more)
         raise_if_interrupted()
     return flips
 
 
-def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
-    """Return THE Delaunay triangulation of the points, by flips from any triangulation of their hull.
+def _checked(points: FloatArray, corners: IntArray) -> Report:
+    """Verify that the triangles are a triangulation of the points' hull."""
+    report = verify(points, corners, claims=_TRIANGULATION)
+    if not report.ok:
+        fault = next(v for v in report.violations if v.property in (*report.claims, Property.EDGE_MANIFOLD))
+        raise InadmissibleError(
+            f"the triangles are no triangulation of the points' hull: {fault.message}",
+            report=report,
+            indices=fault.triangles or fault.vertices,
+        )
+    return report
+
+
+def _constrained(graph: PSLG, built: Insertion, report: Report) -> Constrained:
+    """Return the edges along the segments of the graph."""
+    plane = plane_of(built)
+    pieces, missing = edges_along(plane, graph.segments)
+    if missing.size:
+        s = int(missing[0])
+        more = f", nor are {missing.size - 1} more" if missing.size > 1 else ""
+        raise InadmissibleError(
+            f"segment {s} {tuple(graph.segments[s].tolist())} is no chain of edges of the triangles{more}",
+            report=report,
+            indices=missing.tolist(),
+        )
+    return in_order(plane, graph.segments, pieces)
+
+
+def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike, *, segments: npt.ArrayLike | None = None) -> Triangulation:
+    """Return THE (constrained) Delaunay triangulation of the points, by flips from any triangulation of their hull.
 
     Args:
         points: (n, 2) finite coordinates, all distinct.
         triangles: integers (m, 3), counterclockwise, a triangulation of the convex hull that uses every point.
+        segments: integers (s, 2), rows of points: chains of edges of the triangles, which are not flipped.
 
     Returns:
-        The same :class:`Triangulation` as :func:`exactmesh.delaunay` up to the order of the triangles, whatever the
+        The same :class:`Triangulation` as :func:`exactmesh.delaunay`, or with segments as
+        :func:`exactmesh.constrained_delaunay` with ``carve=False``, up to the order of the triangles, whatever the
         start; ``work.flips`` is the number of flips.
 
     Raises:
         InadmissibleError: the triangles are no such triangulation; ``report`` is the verifier's, with witnesses, and
-            ``indices`` names the triangles of the first, or the points where it has none.
+            ``indices`` names the triangles of the first, or the points where it has none. Or segments are no chains of
+            their edges, and ``indices`` names these.
+        PSLGError: segments that name no point, begin where they end, or are there twice.
         TooFewPointsError: fewer than three points.
         NonFiniteError, CoordinateError, ShapeError: as for :func:`exactmesh.delaunay`.
 
@@ -190,30 +228,28 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike) -> Triangulation:
     >>> mesh = lawson([(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)])
     >>> mesh.work.flips, sorted(sorted(t) for t in mesh.triangles.tolist())
     (1, [[0, 1, 3], [1, 2, 3]])
+    >>> lawson([(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)], segments=[(2, 0)]).work.flips
+    0
     """
     given = finite_points(points).copy()
     if len(given) < 3:
         raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
     corners = vertex_indices(triangles)
-    report = verify(given, corners, claims=_TRIANGULATION)
-    if not report.ok:
-        fault = next(v for v in report.violations if v.property in (*report.claims, Property.EDGE_MANIFOLD))
-        raise InadmissibleError(
-            f"the triangles are no triangulation of the points' hull: {fault.message}",
-            report=report,
-            indices=fault.triangles or fault.vertices,
-        )
+    report = _checked(given, corners)
+    graph = PSLG(given, () if segments is None else segments)
     ring, org, face = rings_of(corners, neighbors_of(corners))
     xy, k = scaled_into_window(given)
-    hull = (face[0::2] == OUTSIDE) | (face[1::2] == OUTSIDE)
-    flips = _flip_all(xy, k, ring, org, hull)
-    slot = np.where(face.reshape(-1, 2)[:, ::-1].reshape(-1) == OUTSIDE, OUTER, -1).astype(np.int32)
+    outer = face == OUTSIDE
+    fixed = outer[0::2] | outer[1::2]
     same = np.arange(len(given), dtype=np.int32)
+    built = Insertion(k, xy.reshape(-1), same.astype(np.int64), ring, org, same, len(fixed), 0)
+    edges = _constrained(graph, built, report)
+    fixed[edges.edges] = True
+    built = built._replace(flips=_flip_all(xy, k, ring, org, fixed))
+    slot = np.where(outer.reshape(-1, 2)[:, ::-1].reshape(-1), OUTER, -1).astype(np.int32)
     found, neighbors = triangles_of(ring, org, slot, same)
-    return Triangulation(
-        points=given,
-        triangles=found,
-        neighbors=neighbors,
-        representative=same,
-        work=work_of(k, flips),
-    )
+    if segments is None:
+        return Triangulation(given, found, neighbors, representative=same, work=work_of(k, built.flips))
+    sides = (slot.reshape(-1, 2)[edges.edges] >= 0).sum(axis=1)
+    cut = Cut(found, neighbors, np.full(len(found), -1, dtype=np.int32), sides)
+    return assembled(Task(graph, graph, None, None), built, edges, cut)

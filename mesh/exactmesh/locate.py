@@ -7,6 +7,7 @@ steps than there are triangles gives way to a look at every triangle, so that lo
 
 import numpy as np
 
+from exactkernel.batch import orient2d_batch
 from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
@@ -14,7 +15,7 @@ from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.ordering import IndexArray, insertion_order
 
-__all__ = ["locate_points"]
+__all__ = ["locate_points", "on_boundary"]
 
 _CHUNK = 1 << 17  # queries between two looks at Ctrl-C, where predicates are fast
 
@@ -87,3 +88,26 @@ def locate_points(points: FloatArray, triangles: IntArray, neighbors: IntArray, 
         start = _walk_all(k, corners, triangles, neighbors, sought, order[first : first + step], start, found)
         raise_if_interrupted()
     return found
+
+
+def on_boundary(
+    points: FloatArray, triangles: IntArray, neighbors: IntArray, m: int, queries: FloatArray, found: IntArray
+) -> IntArray:
+    """Return for queries in triangles that complete the first m one of the m that they lie on the boundary of, or -1.
+
+    ``found`` are those triangles, whose closures contain the queries.
+    """
+    place = triangles[found]
+    on_side = np.stack(
+        [orient2d_batch(points[place[:, (i + 1) % 3]], points[place[:, (i + 2) % 3]], queries) == 0 for i in range(3)],
+        axis=1,
+    )
+    zeros = on_side.sum(axis=1)
+    at_vertex = np.empty(len(points), dtype=np.int32)  # every corner of these triangles is one of the first m's, too
+    at_vertex[triangles[:m].reshape(-1)] = np.repeat(np.arange(m, dtype=np.int32), 3)
+    rows = np.arange(len(found))
+    beside = neighbors[found, on_side.argmax(axis=1)]
+    result = np.where((zeros == 1) & (beside < m), beside, np.int32(-1))
+    corner = place[rows, on_side.argmin(axis=1)]
+    result[zeros == 2] = at_vertex[corner[zeros == 2]]
+    return result

@@ -28,6 +28,8 @@ _SLIMMEST = 0.2  # of the longer side
 _POINTS_DRAWN = 3000  # more of them would hide the mesh
 _COLORS = "YlGnBu_r"
 _INK = "#1b2a41"
+_RED = "#c1121f"
+_BOLD = 1.6
 
 
 class PlotUnavailableError(ExactMeshError, ImportError):
@@ -35,9 +37,14 @@ class PlotUnavailableError(ExactMeshError, ImportError):
 
 
 def plot_mesh(
-    points: npt.ArrayLike, triangles: npt.ArrayLike, path: str | os.PathLike[str], *, title: str | None = None
+    points: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    path: str | os.PathLike[str],
+    *,
+    segments: npt.ArrayLike | None = None,
+    title: str | None = None,
 ) -> None:
-    """Draw a mesh into a picture: the triangles by their smallest angle, and the points when they are few.
+    """Draw a mesh into a picture: triangles by their smallest angle, segments bold, points when they are few.
 
     The picture is in proportion, without axes; below it stand the title and the counts. Linear time; 100,000 triangles
     take some seconds. Any finite coordinates can be drawn.
@@ -46,6 +53,7 @@ def plot_mesh(
         points: (n, 2), n > 0.
         triangles: (m, 3), indices into ``points``; of either orientation.
         path: ``.png``, ``.svg`` or ``.pdf``.
+        segments: (s, 2), indices into ``points``: the constrained edges.
         title: the first line of the caption.
 
     Raises:
@@ -58,11 +66,11 @@ def plot_mesh(
     suffix = os.path.splitext(place)[1].lower()
     if suffix not in PICTURES:
         raise FileFormatError(f"has the suffix {suffix!r}; pictures are {', '.join(PICTURES)}", path=place)
-    mesh = Mesh(points, triangles=triangles)
+    mesh = Mesh(points, triangles=triangles, segments=segments)
     if not len(mesh.points):
         raise ExactMeshError("there are no points to draw")
     assert mesh.triangles is not None
-    figure = _figure(mesh.points, mesh.triangles, title)
+    figure = _figure(mesh, mesh.triangles, title)
     picture = io.BytesIO()
     metadata = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
     figure.savefig(picture, format=suffix[1:], dpi=_DPI, bbox_inches="tight", pad_inches=0.15, metadata=metadata)
@@ -73,13 +81,14 @@ def plot_mesh(
     write_whole({place: write_to})
 
 
-def _figure(points: FloatArray, triangles: IntArray, title: str | None) -> "Figure":
+def _figure(mesh: Mesh, triangles: IntArray, title: str | None) -> "Figure":
     try:
         from matplotlib.figure import Figure
     except ImportError:
         raise PlotUnavailableError(
             "pictures need matplotlib, which is not installed: pip install 'exactmesh[plot]'"
         ) from None
+    points = mesh.points
     unit = np.ldexp(points, -int(np.frexp(np.abs(points).max())[1]))  # no difference overflows
     drawn = _in_unit_box(unit)
     width, height = np.maximum(np.ptp(drawn, axis=0), _SLIMMEST)
@@ -89,6 +98,9 @@ def _figure(points: FloatArray, triangles: IntArray, title: str | None) -> "Figu
     axes.set_axis_off()
     angles = angles_of(unit, triangles)
     _draw_triangles(axes, drawn, triangles, angles.min(axis=1, initial=60.0))
+    if mesh.segments is not None:
+        bold = float(np.clip(_BOLD * 30.0 / np.sqrt(max(len(mesh.segments), 1)), 0.3, _BOLD))
+        _draw_lines(axes, drawn[mesh.segments], bold, _RED)
     if len(points) <= _POINTS_DRAWN:
         size = np.clip(2500.0 / len(points), 0.8, 22.0)
         axes.scatter(drawn[:, 0], drawn[:, 1], s=size, c=_INK, linewidths=0, zorder=3)
@@ -105,7 +117,7 @@ def _in_unit_box(points: FloatArray) -> FloatArray:
 
 
 def _draw_triangles(axes: "Axes", drawn: FloatArray, triangles: IntArray, smallest: FloatArray) -> None:
-    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.collections import PolyCollection
 
     if not len(triangles):
         return
@@ -124,8 +136,13 @@ def _draw_triangles(axes: "Axes", drawn: FloatArray, triangles: IntArray, smalle
     )
     thin = float(np.clip(40.0 / np.sqrt(len(edges)), 0.08, 0.9))
     for shown, width in ((edges, thin), (edges[uses == 1], max(2.0 * thin, 0.7))):
-        lines = LineCollection(drawn[shown], colors=_INK, linewidths=width)  # type: ignore[arg-type]
-        axes.add_collection(lines)
+        _draw_lines(axes, drawn[shown], width, _INK)
+
+
+def _draw_lines(axes: "Axes", lines: FloatArray, width: float, color: str) -> None:
+    from matplotlib.collections import LineCollection
+
+    axes.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]
 
 
 def _write_caption(figure: "Figure", points: FloatArray, angles: FloatArray, title: str | None) -> None:

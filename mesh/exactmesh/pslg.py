@@ -1,24 +1,30 @@
 """The input of constrained triangulations: a planar straight line graph, validated once, then immutable."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.arrays import exact_doubles, finite_points, unrounded_array
+from exactkernel.arrays import exact_doubles, finite_points
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.columns import MarkerArray, attributes_of, frozen, integers, markers_of, rows_for
-from exactmesh.errors import ChoiceError, PSLGError
+from exactmesh.columns import MarkerArray, attributes_of, frozen, integers, markers_of, regions_of, rows_for
+from exactmesh.errors import ChoiceError, GeometryError, PSLGError
 from exactmesh.faults import seed_faults, segment_faults
+from exactmesh.geojson import geojson_of, pieces_of_geojson
+from exactmesh.rings import Piece, graph_of, pieces_of_rings, rings_of
+from exactmesh.shapes import domain_of, pieces_of_shapely
 from exactmesh.svg import svg_of
 
-__all__ = ["PSLG", "Carve"]
+if TYPE_CHECKING:
+    from shapely import MultiPolygon, Polygon
+    from shapely.geometry.base import BaseGeometry
 
-_UNLIMITED = -1.0  # area of a region that is given without one
+__all__ = ["PSLG", "Carve"]
 
 
 class Carve(StrEnum):
@@ -104,7 +110,10 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
     ) -> None:
         coordinates = finite_points(points)
         n, ends = len(coordinates), _pairs(segments)
-        seeds = {"hole": exact_doubles(() if holes is None else holes, "holes"), "region": _regions(regions)}
+        seeds = {
+            "hole": exact_doubles(() if holes is None else holes, "holes"),
+            "region": regions_of(regions, "regions"),
+        }
         content: dict[str, object] = {
             "points": coordinates,
             "holes": seeds["hole"],
@@ -126,10 +135,131 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         content["duplicates"] = np.flatnonzero(representative != np.arange(n, dtype=np.int32)).astype(np.int32)
         self.__setstate__(content)
 
+    @classmethod
+    def from_rings(cls, rings: Iterable[npt.ArrayLike], *, markers: npt.ArrayLike | None = None) -> Self:
+        """Return the PSLG of rings, to be carved by even-odd: a ring inside a ring is a hole.
+
+        Args:
+            rings: arrays (k, 2) of vertices in order, of either orientation; the first may be repeated at the end.
+            markers: one integer a ring, for its segments.
+
+        Raises:
+            PSLGError: rings of fewer than three distinct vertices.
+            ShapeError, CoordinateError, NonFiniteError: as for points; the message names ``rings[i]``.
+
+        Linear time, and the check of a PSLG.
+
+        >>> from exactmesh import PSLG
+        >>> pslg = PSLG.from_rings([[(0, 0), (9, 0), (0, 9), (0, 0)], [(1, 1), (2, 1), (1, 2)]], markers=[7, 8])
+        >>> pslg.segments.tolist(), pslg.segment_markers.tolist()
+        ([[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3]], [7, 7, 7, 8, 8, 8])
+        >>> [ring.tolist() for ring in pslg.rings()]
+        [[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]], [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]]]
+        """
+        return cls._of(pieces_of_rings(rings), markers)
+
+    @classmethod
+    def from_geojson(cls, source: str | bytes | Mapping[str, object]) -> Self:
+        """Return the PSLG of a GeoJSON object, to be carved by even-odd; files are for :func:`exactmesh.io.read_pslg`.
+
+        Rings of polygons and lines become segments, points become points, in their order; properties are not read.
+
+        Args:
+            source: the text, or the dictionary that it stands for: a geometry, a Feature, a FeatureCollection.
+
+        Raises:
+            GeometryError: no GeoJSON, or a third coordinate; it says where.
+            PSLGError: rings of fewer than three distinct vertices.
+
+        >>> from exactmesh import PSLG
+        >>> PSLG.from_geojson('{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 0.1], [0, 0]]]}')
+        PSLG(3 points, 3 segments, 0 holes, 0 regions, carve by even-odd)
+        """
+        return cls._of(pieces_of_geojson(source))
+
+    @classmethod
+    def from_shapely(cls, geometry: "BaseGeometry | Iterable[BaseGeometry]") -> Self:
+        """Return the PSLG of one shapely geometry or of several, to be carved by even-odd. Needs the extra ``shapely``.
+
+        Rings of polygons and lines become segments, points become points, in their order, bit for bit.
+
+        Raises:
+            ShapelyUnavailableError: shapely is not installed; the message says how to get it.
+            GeometryError: no geometry of straight lines, or a third coordinate.
+            PSLGError: rings of fewer than three distinct vertices.
+        """
+        return cls._of(pieces_of_shapely(geometry))
+
+    @classmethod
+    def _of(cls, pieces: Sequence[Piece], markers: npt.ArrayLike | None = None) -> Self:
+        graph = graph_of(pieces)
+        of_piece = rows_for(markers_of(markers, "ring_markers"), "ring_markers", len(pieces))
+        segment_markers = None if of_piece is None else of_piece[graph.piece]
+        return cls(graph.points, graph.segments, segment_markers=segment_markers, rule=Carve.EVEN_ODD)
+
+    def rings(self) -> list[FloatArray]:
+        """Return the cycles that the segments form, arrays (k, 2) that do not repeat the first vertex.
+
+        Cycles are those of the indices as given: points at the same position are not merged. Each begins with its
+        first segment. O(n + s).
+
+        Raises:
+            PSLGError: a point where other than two segments end, or none.
+        """
+        return rings_of(self.points, self.segments)
+
+    def to_geojson(self) -> str:
+        """Return GeoJSON that :meth:`from_geojson` reads back, each number as the same double.
+
+        Rings become a Polygon or MultiPolygon, the outer ring of each before its holes, and keep their orientation;
+        points at which no segment ends become a MultiPoint.
+
+        Raises:
+            GeometryError: GeoJSON has no place for something: the rule of seeds, holes, regions, markers, attributes.
+            PSLGError: the segments are no rings.
+
+        >>> from exactmesh import PSLG
+        >>> PSLG.from_rings([[(0, 0), (1, 0), (0, 0.1)]]).to_geojson()
+        '{"type": "Polygon", "coordinates": [[[0.0, 0.0], [1.0, 0.0], [0.0, 0.1], [0.0, 0.0]]]}'
+        """
+        names = ("holes", "regions", "point_markers", "segment_markers", "point_attributes")
+        lost = [name for name in names if (array := getattr(self, name)) is not None and len(array)]
+        if len(self.segments) and self.rule is not Carve.EVEN_ODD:
+            lost.append("the rule of seeds")
+        if lost:
+            remedy = "leave out what is not needed by dataclasses.replace(pslg, ...)"
+            raise GeometryError(f"GeoJSON has no place for {', '.join(lost)}; {remedy}")
+        alone = np.ones(len(self.points), dtype=np.bool_)
+        alone[self.segments] = False
+        return geojson_of(self.rings(), self.points[alone])
+
+    def to_shapely(self) -> "Polygon | MultiPolygon":
+        """Return the domain, by the rule and the seeds of holes, as a shapely polygon. Needs the extra ``shapely``.
+
+        This is exchange, by shapely's arithmetic. Which faces belong to the domain is decided exactly, and vertices are
+        points of the PSLG, bit for bit, as long as no segments cross; where they do, shapely rounds.
+
+        Raises:
+            ShapelyUnavailableError: shapely is not installed; the message says how to get it.
+            GeometryError: segments cross, and shapely fails at that.
+        """
+        return domain_of(self.points, self.segments, self.holes, even_odd=self.rule is Carve.EVEN_ODD)
+
     def __setstate__(self, content: dict[str, object]) -> None:
         # copies and pickles come this way as well: numpy does not pass on that an array is read-only
         for name, value in content.items():
             object.__setattr__(self, name, frozen(value) if isinstance(value, np.ndarray) else value)
+
+    def with_rule(self, rule: Carve | str) -> "PSLG":
+        """Return the same graph with another rule for its domain. O(1).
+
+        >>> from exactmesh import PSLG
+        >>> PSLG([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2), (2, 0)]).with_rule("even-odd")
+        PSLG(3 points, 3 segments, 0 holes, 0 regions, carve by even-odd)
+        """
+        other = object.__new__(PSLG)
+        other.__setstate__({**{f.name: getattr(self, f.name) for f in fields(self)}, "rule": Carve(rule)})
+        return other
 
     def __repr__(self) -> str:
         named = ((len(getattr(self, name)), name) for name in ("points", "segments", "holes", "regions"))
@@ -162,15 +292,3 @@ def _pairs(segments: npt.ArrayLike) -> MarkerArray:
     if array.ndim != 2 or array.shape[1] != 2:
         raise ShapeError(f"segments has shape {array.shape}; expected (s, 2)")
     return array
-
-
-def _regions(regions: npt.ArrayLike | None) -> FloatArray:
-    array = unrounded_array(() if regions is None else regions, "regions")
-    if array.size == 0 and array.ndim <= 2:
-        return np.zeros((0, 4))
-    if array.ndim != 2 or array.shape[1] not in (3, 4):
-        raise ShapeError(f"regions has shape {array.shape}; expected (r, 4): x, y, attribute, area; or (r, 3)")
-    places, bounds = exact_doubles(array[:, :2], "regions"), exact_doubles(array[:, [2, -1]], "regions")
-    if array.shape[1] == 3:
-        bounds[:, 1] = _UNLIMITED
-    return np.hstack([places, bounds])

@@ -23,6 +23,13 @@ def facts(mesh: Mesh) -> Iterator[tuple[str, str]]:
         yield "attributes of a point", str(mesh.point_attributes.shape[1])
     if mesh.point_markers is not None and len(points):
         yield "point markers", f"{mesh.point_markers.min()} to {mesh.point_markers.max()}"
+    if mesh.segments is not None:
+        yield "segments", f"{len(mesh.segments):,}"
+    if mesh.segment_markers is not None and len(mesh.segment_markers):
+        yield "segment markers", f"{mesh.segment_markers.min()} to {mesh.segment_markers.max()}"
+    for name, seeds in (("holes", mesh.holes), ("regions", mesh.regions)):
+        if seeds is not None:
+            yield name, f"{len(seeds):,}"
     if triangles is None:
         return
     yield "triangles", f"{len(triangles):,}"

@@ -3,9 +3,11 @@
 ========================  =========================================================================
 ``.node``                 points, their attributes and markers
 ``.ele``                  triangles and their attributes (of six-node elements, the three corners)
+``.poly``                 segments, holes, regions; with points of its own, or beside a ``.node``
 ``.neigh`` ``.edge``      neighbours; edges and their markers
 ``.npz``                  all arrays of a :class:`Mesh`, by their names
 ``.csv``                  points: with a header that names x and y, or two columns without one
+``.geojson`` ``.json``    polygons, lines and points: a PSLG
 ========================  =========================================================================
 
 Triangle's files belong together by their stem: ``box.1.ele`` needs ``box.1.node`` beside it.
@@ -13,7 +15,28 @@ Triangle's files belong together by their stem: ``box.1.ele`` needs ``box.1.node
 Reference: [Shewchuk 1996]
 """
 
-from exactmesh.io.files import read, read_points, read_triangles, write
+from exactmesh.io.files import (
+    holds_segments,
+    read,
+    read_graph,
+    read_points,
+    read_pslg,
+    read_triangles,
+    write,
+    write_pslg,
+)
 from exactmesh.io.model import Mesh, Triangulated, mesh_of
 
-__all__ = ["Mesh", "Triangulated", "mesh_of", "read", "read_points", "read_triangles", "write"]
+__all__ = [
+    "Mesh",
+    "Triangulated",
+    "holds_segments",
+    "mesh_of",
+    "read",
+    "read_graph",
+    "read_points",
+    "read_pslg",
+    "read_triangles",
+    "write",
+    "write_pslg",
+]

@@ -1,14 +1,15 @@
 """What a mesh file holds, as arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
+import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
-from exactkernel.errors import ShapeError
+from exactkernel.errors import NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.columns import MarkerArray, attributes_of, frozen, indices_of, markers_of, rows_for
+from exactmesh.columns import MarkerArray, attributes_of, frozen, indices_of, markers_of, regions_of, rows_for
 
 __all__ = ["MarkerArray", "Mesh", "Triangulated", "mesh_of"]
 
@@ -49,6 +50,10 @@ class Mesh:
         point_markers: int64 (n,).
         triangle_attributes: float64 (m, b).
         edge_markers: int64 (k,).
+        segments: int32 (s, 2), the edges that are constrained; None if there are none on file.
+        segment_markers: int64 (s,).
+        holes: float64 (h, 2), a point inside each hole.
+        regions: float64 (r, 4), x, y, attribute and largest area of each region.
         base: 0 or 1, what Triangle's files count from; kept on writing.
 
     Raises:
@@ -68,6 +73,10 @@ class Mesh:
     point_markers: MarkerArray | None = None
     triangle_attributes: FloatArray | None = None
     edge_markers: MarkerArray | None = None
+    segments: IntArray | None = None
+    segment_markers: MarkerArray | None = None
+    holes: FloatArray | None = None
+    regions: FloatArray | None = None
     base: int = 0
 
     def __init__(
@@ -81,6 +90,10 @@ class Mesh:
         point_markers: npt.ArrayLike | None = None,
         triangle_attributes: npt.ArrayLike | None = None,
         edge_markers: npt.ArrayLike | None = None,
+        segments: npt.ArrayLike | None = None,
+        segment_markers: npt.ArrayLike | None = None,
+        holes: npt.ArrayLike | None = None,
+        regions: npt.ArrayLike | None = None,
         base: int = 0,
     ) -> None:
         if base not in (0, 1):
@@ -91,6 +104,9 @@ class Mesh:
         m = None if corners is None else len(corners)
         sides = indices_of(edges, "edges", 2, 0, n)
         k = None if sides is None else len(sides)
+        constrained = indices_of(segments, "segments", 2, 0, n)
+        s = None if constrained is None else len(constrained)
+        hole_seeds, region_seeds = _seeds(holes, regions, s)
         fields = {
             "points": coordinates,
             "triangles": corners,
@@ -102,14 +118,49 @@ class Mesh:
                 attributes_of(triangle_attributes, "triangle_attributes"), "triangle_attributes", m
             ),
             "edge_markers": rows_for(markers_of(edge_markers, "edge_markers"), "edge_markers", k),
+            "segments": constrained,
+            "segment_markers": rows_for(markers_of(segment_markers, "segment_markers"), "segment_markers", s),
+            "holes": hole_seeds,
+            "regions": region_seeds,
         }
         for name, array in fields.items():
             object.__setattr__(self, name, None if array is None else frozen(array))
         object.__setattr__(self, "base", int(base))
 
 
+def _seeds(
+    holes: npt.ArrayLike | None, regions: npt.ArrayLike | None, segments: int | None
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Return the seeds of holes and regions, None if there are none."""
+    hole_seeds, region_seeds = finite_points(() if holes is None else holes, "holes"), regions_of(regions, "regions")
+    bad = np.flatnonzero(~np.isfinite(region_seeds).all(axis=1))
+    if bad.size:
+        raise NonFiniteError(f"regions[{bad[0]}] is not finite: {region_seeds[bad[0]].tolist()}", indices=bad.tolist())
+    if segments is None and len(hole_seeds) + len(region_seeds):
+        raise ShapeError("holes and regions belong to segments, and there are none")
+    return hole_seeds if len(hole_seeds) else None, region_seeds if len(region_seeds) else None
+
+
 def mesh_of(mesh: Mesh | Triangulated) -> Mesh:
-    """Return a mesh as it is, a triangulation as the mesh of its points, triangles, neighbours and edges."""
+    """Return a mesh as it is, a triangulation as the mesh of what it consists of.
+
+    That is points, triangles, neighbours and edges; of a PSLG also its segments, markers, attributes, and seeds.
+    """
     if isinstance(mesh, Mesh):
         return mesh
-    return Mesh(mesh.points, triangles=mesh.triangles, neighbors=mesh.neighbors, edges=mesh.edges)
+    from exactmesh.triangulation import Triangulation  # which compiled code stands behind, that most files do not need
+
+    plain = Mesh(mesh.points, triangles=mesh.triangles, neighbors=mesh.neighbors, edges=mesh.edges)
+    if not isinstance(mesh, Triangulation) or mesh.pslg is None:
+        return plain
+    return replace(
+        plain,
+        point_attributes=mesh.vertex_attributes,
+        point_markers=mesh.vertex_markers,
+        triangle_attributes=mesh.triangle_attributes,
+        edge_markers=mesh.edge_markers,
+        segments=mesh.segments,
+        segment_markers=mesh.segment_markers,
+        holes=mesh.pslg.holes,
+        regions=mesh.pslg.regions,
+    )

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from exactkernel.types import IntArray
+from exactmesh.connectivity import check_neighbors
+from exactmesh.errors import TopologyError
 from exactmesh.io.model import Mesh
 from exactmesh.io.text import TextFile, rows_of_text
 
@@ -19,8 +21,7 @@ def read_neigh(path: str, triangles: IntArray, base: int) -> IntArray:
     Header ``N 3``, then N rows ``i n1 n2 n3``. Linear time.
 
     Raises:
-        FileFormatError: where and what; also when a neighbour lacks the edge, so that the file is another
-            mesh's.
+        FileFormatError: where and what; also when neighbours are not mutual across their edge, or one is missing.
     """
     file = TextFile.load(path)
     count, sides = file.header(("number of triangles", "number of neighbours per triangle"), (0, _SIDES))
@@ -34,24 +35,40 @@ def read_neigh(path: str, triangles: IntArray, base: int) -> IntArray:
     outside = numbers == -1
     file.in_range(np.where(outside, base, numbers), base, base + count - 1, "triangle")
     neighbors = np.where(outside, -1, numbers - base).astype(np.int32)
-    _refuse_strangers(file, triangles, neighbors, base)
+    try:
+        check_neighbors(triangles, neighbors)
+    except TopologyError as error:
+        row = error.indices[0]
+        other = _unconfirmed(triangles, neighbors, row)
+        message = f"triangles {base + row} and {base + other} are not each other's neighbours across one edge"
+        raise file.fault(f"{message}: a broken file, or that of another mesh", line=file.line_of(row)) from None
+    _refuse_missing(file, triangles, neighbors, base)
     return neighbors
 
 
-def _refuse_strangers(file: TextFile, triangles: IntArray, neighbors: IntArray, base: int) -> None:
+def _unconfirmed(triangles: IntArray, neighbors: IntArray, row: int) -> int:
+    """Return the first neighbour of a triangle that does not have it as its own across the edge between them."""
     for side in range(_SIDES):
-        rows = np.flatnonzero(neighbors[:, side] >= 0)
-        theirs = triangles[neighbors[rows, side]]
-        shared = np.ones(len(rows), dtype=np.bool_)
-        for corner in (triangles[rows, (side + 1) % 3], triangles[rows, (side + 2) % 3]):
-            shared &= (theirs == corner[:, None]).any(axis=1)
-        if not shared.all():
-            row = int(rows[np.flatnonzero(~shared)[0]])
-            raise file.fault(
-                f"triangles {base + row} and {base + neighbors[row, side]} have no edge in common there: "
-                "the .ele file is of another mesh",
-                line=file.line_of(row),
-            )
+        other = int(neighbors[row, side])
+        edge = [triangles[row, (side + 2) % 3], triangles[row, (side + 1) % 3]]
+        theirs = [k for k in range(_SIDES) if [triangles[other, (k + 1) % 3], triangles[other, (k + 2) % 3]] == edge]
+        if other >= 0 and not any(neighbors[other, k] == row for k in theirs):
+            return other
+    raise AssertionError("check_neighbors found one")  # pragma: no cover
+
+
+def _refuse_missing(file: TextFile, triangles: IntArray, neighbors: IntArray, base: int) -> None:
+    """Refuse two triangles on the two sides of an edge, where each is said to have nobody there."""
+    rows, corners = np.nonzero(neighbors < 0)
+    start, end = (
+        triangles[rows, (corners + 1) % 3].astype(np.int64),
+        triangles[rows, (corners + 2) % 3].astype(np.int64),
+    )
+    both = np.flatnonzero(np.isin(start << 32 | end, end << 32 | start))
+    if both.size:
+        row, side = int(rows[both[0]]), int(corners[both[0]])
+        message = f"triangle {base + row} has a neighbour opposite its corner {side + 1} that is not listed"
+        raise file.fault(message, line=file.line_of(row))
 
 
 def neigh_text(mesh: Mesh) -> Iterator[str]:

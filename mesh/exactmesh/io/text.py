@@ -6,7 +6,7 @@ import re
 import stat
 import warnings
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, islice
 
 import numpy as np
@@ -72,10 +72,15 @@ def _shown(field: str) -> str:
 
 @dataclass(frozen=True)
 class TextFile:
-    """The lines of a text file without their comments; line k of the file is ``lines[k - 1]``."""
+    """The lines of a text file without their comments; line k of the file is ``lines[k - 1]``.
+
+    A file of several sections, each with a header of its own, is read section by section: ``first`` is where the
+    present one begins, and :meth:`section` returns the rest of the file beside the table.
+    """
 
     path: str
     lines: list[str]
+    first: int = 0
 
     @classmethod
     def load(cls, path: str, comment: str = r"#[^\n]*") -> "TextFile":
@@ -93,7 +98,7 @@ class TextFile:
 
     def data_lines(self) -> Iterator[tuple[int, list[str]]]:
         """Yield (line number, fields) of each line with something like a number; Triangle skips others."""
-        for line, text in enumerate(self.lines, start=1):
+        for line, text in enumerate(islice(self.lines, self.first, None), start=self.first + 1):
             if _NUMBER_LIKE.search(text):
                 yield line, text.split()
 
@@ -109,7 +114,8 @@ class TextFile:
         """
         line, fields = next(self.data_lines(), (0, []))
         if not fields:
-            raise self.fault("is empty: no header line with the number of rows")
+            fault = f"ends where the {names[0]} belongs" if self.first else "is empty: no header line"
+            raise self.fault(fault)
         if len(fields) > len(names):
             raise self.fault(f"the header has {len(fields)} fields, expected {' '.join(names)}", line=line)
         values = list(defaults)
@@ -202,6 +208,32 @@ class TextFile:
             if rows is not None and len(rows) == count:
                 return rows
         return self._slow_table(dtype, fields, count)
+
+    def section(self, dtype: np.dtype[np.void], count: int) -> "tuple[Table, TextFile]":
+        """Return ``count`` rows below the header, and the rest of the file, which begins with another header.
+
+        As careful and as fast as :meth:`table`.
+
+        Raises:
+            FileFormatError: as for :meth:`table`; a row that is missing shows in the line that stands in its place.
+        """
+        header = next(self.data_lines())[0]
+        stop = min(header + count, len(self.lines))
+        rows = fast_table(self.lines[header:stop], dtype) if count and self.width() else None
+        if rows is None or len(rows) != count:  # something is wrong, or there are blank lines
+            stop = next((line for line, _ in islice(self.data_lines(), count, count + 1)), len(self.lines))
+            part = replace(self, lines=self.lines[:stop])
+            rows = part.table(dtype, count)
+        return rows, replace(self, first=stop)
+
+    def end(self) -> None:
+        """Refuse more content.
+
+        Raises:
+            FileFormatError: there is more to read.
+        """
+        for line, _ in self.data_lines():
+            raise self.fault("content after the last section", line=line)
 
     def _slow_table(self, dtype: np.dtype[np.void], fields: list[type], count: int) -> Table:
         rows: list[tuple[int | float, ...]] = []

@@ -1,0 +1,343 @@
+"""ARR: which segments meet, and the planar graph that they become, against brute force in fractions."""
+
+from fractions import Fraction
+from itertools import combinations, pairwise
+
+import numpy as np
+import pytest
+from gmpy2 import mpq
+from hypothesis import given
+from proofs_tests import crossing_oracle as oracle
+from proofs_tests.crossing_strategies import Drawing, bundle, drawings, near_bundles
+from proofs_tests.oracles import RationalPoint, rationals
+
+from exactkernel.types import FloatArray
+from exactmesh import PSLG, memory
+from exactmesh.coincident import first_of_each, lexicographic_order
+from exactmesh.crossing_points import CrossingRounder
+from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
+from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
+from exactmesh.noding import Graph
+from exactmesh.snapping import grid_of, snap
+
+#: Corpus number 7: three segments through nearly one point.
+SEVEN = np.array(
+    [
+        (-0.6616708319446925, 0.043023726210314694), (1.3283374986113592, 0.242690559503971),
+        (-0.029024421143340307, -0.7891819431100835), (0.6956910878100069, 1.074896228824369),
+        (0.9996093546131575, -0.6028480693195775), (-0.3329426879464908, 0.888562355033863),
+    ]
+)  # fmt: skip
+#: The bundles of the corpus that noding does not make planar, so that they are snapped.
+SNAPPED_BUNDLES = {26}
+
+
+def found(
+    points: FloatArray | list[tuple[float, float]], segments: list[tuple[int, int]]
+) -> list[tuple[int, int, int]]:
+    pairs = find_crossings(points, segments)
+    return [(i, j, kind) for (i, j), kind in zip(pairs.pairs.tolist(), pairs.kinds.tolist(), strict=True)]
+
+
+@pytest.mark.obligation("ARR1", "the pairs of segments that meet, and how, are those of brute force")
+class TestPairs:
+    """find_crossings returns exactly the pairs that meet elsewhere than in an end of both, each with its kind."""
+
+    @given(drawings())
+    def test_small_drawings(self, drawing: Drawing) -> None:
+        points, segments = drawing
+        assert found(points, segments) == oracle.true_pairs(points, segments)
+
+    @pytest.mark.parametrize("seed", range(4))
+    def test_many_segments_of_a_grid(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        points = rng.integers(0, 9, (80, 2)).astype(np.float64)
+        pairs = [(i, i + 1) for i in range(79) if (points[i] != points[i + 1]).any()]
+        assert found(points, pairs) == oracle.true_pairs(points.tolist(), pairs)
+
+    @pytest.mark.parametrize("size", [1e-3, 0.1, 1.0])
+    def test_cells_and_clipping(self, size: float) -> None:
+        rng = np.random.default_rng(5)
+        begins = rng.random((150, 2)) + 1e6
+        points = np.concatenate([begins, begins + size * rng.normal(size=(150, 2))])
+        segments = [(i, i + 150) for i in range(150)]
+        assert found(points, segments) == oracle.true_pairs(points.tolist(), segments)
+
+    def test_wheels_stacks_and_bundles(self) -> None:
+        rng = np.random.default_rng(7)
+        angles = rng.random(100) * 7.0
+        rim = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        wheel = np.concatenate([[[0.3, 0.3]], rim])
+        assert found(wheel, [(0, i + 1) for i in range(100)]) == []
+        stack = np.concatenate(
+            [np.arange(100)[:, None] * [-0.001, 0.002], np.arange(100)[:, None] * [-0.001, 0.002] + [2, 1]]
+        )
+        assert found(stack, [(i, i + 100) for i in range(100)]) == []
+        through = np.concatenate([0.3 - rim, 0.3 + rim])
+        segments = [(i, i + 100) for i in range(100)]
+        assert found(through, segments) == oracle.true_pairs(through.tolist(), segments)
+
+    def test_control_a_pair_left_out_is_noticed(self) -> None:
+        points, segments = SEVEN.tolist(), [(0, 1), (2, 3), (4, 5)]
+        assert found(points, segments[:2]) != oracle.true_pairs(points, segments)
+        assert oracle.true_pairs([(0, 0), (2, 0), (1, 0), (3, 0)], [(0, 1), (2, 3)]) == [(0, 1, oracle.OVERLAP)]
+        assert oracle.true_pairs([(0, 0), (2, 0), (1, 0), (1, 1)], [(0, 1), (2, 3)]) == [(0, 1, oracle.TOUCH)]
+        assert oracle.true_pairs([(0, 0), (2, 0), (2, 0), (3, 0)], [(0, 1), (2, 3)]) == []
+
+
+@pytest.mark.obligation("ARR2", "a crossing goes to the nearest doubles, or into its own grid cell")
+class TestRounding:
+    """What is certified in double-double, and what the rationals decide, is the nearest double and the right cell."""
+
+    @staticmethod
+    def crossings(drawing: Drawing) -> tuple[FloatArray, list[tuple[int, int]], list[RationalPoint]]:
+        points, segments = drawing
+        exact = rationals(points)
+        ends = [(exact[a], exact[b]) for a, b in segments]
+        pairs = [(i, j) for i, j in combinations(range(len(ends)), 2) if oracle.proper_crossing(ends[i], ends[j])]
+        crossings = [oracle.proper_crossing(ends[i], ends[j]) for i, j in pairs]
+        return np.array(points), pairs, [p for p in crossings if p is not None]
+
+    @given(drawings())
+    def test_nearest_and_cells(self, drawing: Drawing) -> None:
+        points, pairs, crossings = self.crossings(drawing)
+        if not pairs:
+            return
+        segments = np.array(drawing[1], dtype=np.int32)
+        first, second = np.array(pairs, dtype=np.int32).T.copy()
+        for p, exact in zip(CrossingRounder(points, segments)(first, second).tolist(), crossings, strict=True):
+            assert oracle.is_nearest(p[0], exact[0])
+            assert oracle.is_nearest(p[1], exact[1])
+        grid = grid_of(points)
+        cells = CrossingRounder(points, segments, grid)(first, second).astype(np.int64).tolist()
+        assert [tuple(cell) for cell in cells] == [oracle.pixel(p, grid) for p in crossings]
+
+    def test_control_a_neighbour_is_not_the_nearest(self) -> None:
+        exact = Fraction(1, 3)
+        assert oracle.is_nearest(1 / 3, exact)
+        assert not oracle.is_nearest(float(np.nextafter(1 / 3, 1.0)), exact)
+        assert oracle.pixel((Fraction(1, 2), Fraction(-1, 2)), (1.0, 1.0)) == (1, 0)
+
+
+def fraction(value: mpq) -> Fraction:
+    return Fraction(int(value.numerator), int(value.denominator))
+
+
+def faults(a: Arrangement) -> list[str]:
+    """Return what is wrong with an arrangement, by brute force."""
+    wrong = []
+    points, exact = a.pslg.points, rationals(a.pslg.points.tolist())
+    n = len(a.source.points)
+    if not oracle.is_planar(points.tolist(), a.pslg.segments.tolist()):
+        wrong.append("not planar")
+    if a.rounding is not Rounding.SNAPPED and not np.array_equal(points[:n], a.source.points):
+        wrong.append("a point of the input moved")
+    edges = {frozenset(s) for s in a.pslg.representative[a.pslg.segments].tolist()}
+    limit = (Fraction(a.grid[0]) ** 2 + Fraction(a.grid[1]) ** 2) / 4
+    given = rationals(a.source.points.tolist())
+    covered = []
+    for i, (p, q) in enumerate(a.source.segments.tolist()):
+        chain = a.pslg.representative[a.chain(i)].tolist()
+        if [chain[0], chain[-1]] != a.pslg.representative[[p, q]].tolist() or len(set(chain)) != len(chain):
+            wrong.append(f"chain {i} does not lead from end to end")
+        covered += [(frozenset(e), i) for e in pairwise(chain)]
+        farthest = max(oracle.distance_squared(exact[v], (given[p], given[q])) for v in chain)
+        if farthest != fraction(a.distance_squared[i]):
+            wrong.append(f"distance of chain {i}")
+        if farthest > limit:
+            wrong.append(f"chain {i} is too far")
+    rows = a.pslg.representative[a.pslg.segments].tolist()
+    told = [(frozenset(rows[piece]), segment) for piece, segment in a.incidence.tolist()]
+    if sorted(told, key=str) != sorted(covered, key=str) or {edge for edge, _ in covered} != edges:
+        wrong.append("incidence")
+    return wrong
+
+
+@pytest.mark.obligation(
+    "ARR3", "the rounded arrangement is planar, within its stated distance, and noding it changes nothing"
+)
+class TestArrangement:
+    """Whatever the segments: the result is planar by brute force; every chain leads along its segment, within half the
+    diagonal of the grid's cells, at exactly the stated distance; the points of the input stay unless all are snapped;
+    and arranging the result changes nothing, bit for bit."""
+
+    @given(drawings())
+    def test_small_drawings(self, drawing: Drawing) -> None:
+        arranged = arrange(PSLG(*drawing))
+        assert faults(arranged) == []
+        again = arrange(arranged.pslg)
+        assert again.pslg == arranged.pslg
+        assert again.rounding is Rounding.EXACT
+        assert (again.crossings, again.grid) == (0, (0.0, 0.0))
+
+    @given(near_bundles())
+    def test_vertices_are_those_of_brute_force(self, drawing: Drawing) -> None:
+        """Where one round was enough, the new vertices are the crossings, rounded to the nearest doubles."""
+        points, segments = drawing
+        exact = rationals(points)
+        ends = [(exact[a], exact[b]) for a, b in segments]
+        crossings = {p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None}
+        nearest = {(float(p[0]), float(p[1])) for p in crossings}
+        is_exact = all((Fraction(float(x)), Fraction(float(y))) == (x, y) for x, y in crossings)
+        arranged = arrange(PSLG(points, segments))
+        if arranged.rounding is Rounding.EXACT:
+            assert is_exact
+        if arranged.rounding is Rounding.SNAPPED:
+            return
+        new = {(x, y) for x, y in arranged.pslg.points[len(points) :].tolist()}
+        assert nearest <= new | set(points)
+        assert arranged.crossings == len(nearest)
+
+    def test_number_seven_of_the_corpus(self) -> None:
+        arranged = arrange(PSLG(SEVEN, [(0, 1), (2, 3), (4, 5)]))
+        assert faults(arranged) == []
+        assert arranged.rounding is Rounding.NEAREST
+
+    def test_near_concurrent_bundles_of_the_corpus(self) -> None:
+        snapped = set()
+        for seed in range(150):
+            arranged = arrange(PSLG(*bundle(seed)))
+            assert faults(arranged) == [], seed
+            if arranged.rounding is Rounding.SNAPPED:
+                snapped.add(seed)
+        assert snapped == SNAPPED_BUNDLES
+
+    def test_control_rounding_alone_is_not_planar(self) -> None:
+        """Bundle 0 of the corpus: its crossings, each the nearest double, in their order, make pieces that meet."""
+        points, segments = bundle(0)
+        exact = rationals(points.tolist())
+        ends = [(exact[a], exact[b]) for a, b in segments]
+        chains: list[list[tuple[Fraction, tuple[float, float]]]] = []
+        for s in ends:
+            axis = 0 if s[0][0] != s[1][0] else 1
+            sign = 1 if s[0][axis] < s[1][axis] else -1
+            crossings = [p for t in ends if (p := oracle.proper_crossing(s, t)) is not None]
+            chains.append(sorted((sign * p[axis], (float(p[0]), float(p[1]))) for p in [*s, *crossings]))
+        vertices = sorted({p for chain in chains for _, p in chain})
+        pieces = {
+            (vertices.index(p), vertices.index(q)) for chain in chains for (_, p), (_, q) in pairwise(chain) if p != q
+        }
+        assert not oracle.is_planar(vertices, sorted(pieces))
+
+    def test_control_wrong_arrangements_are_noticed(self) -> None:
+        square = PSLG([(0, 0), (4, 4), (0, 4), (4, 0), (2, 2)], [(0, 1), (2, 3)])
+        good = arrange(square)
+        assert faults(good) == []
+        fields = {name: getattr(good, name) for name in good.__dataclass_fields__}
+        unsplit = Arrangement(**{**fields, "pslg": square, "incidence": np.array([[0, 0], [1, 1]])})
+        assert "not planar" in faults(unsplit)
+        moved = good.pslg.points.copy()
+        moved[4] = (2.0, 2.5)
+        far = PSLG(moved, good.pslg.segments)
+        assert {"a point of the input moved", "chain 0 is too far"} <= set(
+            faults(Arrangement(**{**fields, "pslg": far}))
+        )
+        assert "incidence" in faults(Arrangement(**{**fields, "incidence": good.incidence[1:]}))
+
+
+@pytest.mark.obligation(
+    "ARR4", "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets"
+)
+class TestSnapping:
+    """Of any drawing: the vertices are the centres of the pixels with a point or a crossing in them, and each chain
+    leads through exactly the hot pixels that its segment meets; the result is planar."""
+
+    @staticmethod
+    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Graph:
+        representative = first_of_each(points, lexicographic_order(points))
+        ends = representative[np.array(segments, dtype=np.int32).reshape(-1, 2)]
+        return snap(points, ends, representative)
+
+    @given(drawings())
+    def test_small_drawings(self, drawing: Drawing) -> None:
+        points, segments = np.array(drawing[0]), drawing[1]
+        if not segments:
+            return
+        graph, grid = self.snapped(points, segments), grid_of(points)
+        exact = rationals(points.tolist())
+        ends = [(exact[a], exact[b]) for a, b in segments]
+        crossings = [p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None]
+        hot = {oracle.pixel(p, grid) for p in [*exact, *crossings]}
+        cells = [oracle.pixel(p, grid) for p in rationals(graph.points.tolist())]
+        assert set(cells) == hot
+        for i, s in enumerate(ends):
+            chain = graph.chains.vertices[graph.chains.start[i] : graph.chains.start[i + 1]].tolist()
+            met = {cell for cell in hot if oracle.segment_meets_pixel(s, cell, grid)}
+            assert {cells[v] for v in chain} == met
+            assert len(chain) == len(met)
+        assert oracle.is_planar(graph.points.tolist(), graph.pieces.ends.tolist())
+
+    def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
+        slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
+        assert oracle.segment_meets_pixel(slanted, (5, 0), (1.0, 1.0))
+        assert not oracle.segment_meets_pixel(slanted, (4, 1), (1.0, 1.0))
+        assert oracle.segment_meets_pixel(slanted, (5, 1), (1.0, 1.0))
+        touching = ((Fraction(-1), Fraction(0)), (Fraction(0), Fraction(-1)))  # the lower left corner of cell (0, 0)
+        assert oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
+        touching = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))  # its upper right corner
+        assert not oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
+
+
+@pytest.mark.obligation("ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost")
+class TestBoundary:
+    """Faults are named; what would fill the machine is refused; markers, attributes, holes and regions come along."""
+
+    def test_indices_that_do_not_exist(self) -> None:
+        with pytest.raises(TopologyError, match=r"segments\[1\]") as caught:
+            find_crossings([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 3)])
+        assert caught.value.indices == (1,)
+
+    def test_segments_without_length(self) -> None:
+        with pytest.raises(DegenerateError, match="segment 1 begins and ends") as caught:
+            find_crossings([(0, 0), (1, 0), (1, -0.0)], [(0, 1), (1, 2)])
+        assert caught.value.indices == (1,)
+
+    def test_shapes_and_numbers(self) -> None:
+        with pytest.raises(ShapeError):
+            find_crossings([(0, 0), (1, 0)], [(0, 1, 2)])
+        with pytest.raises(NonFiniteError):
+            find_crossings([(0, 0), (1, np.nan)], [(0, 1)])
+        assert len(find_crossings([], [])) == 0
+        assert len(find_crossings([(0, 0), (1, 0)], [])) == 0
+
+    def test_more_than_fits_into_memory(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(memory, "_available", lambda: 1000)
+        points, segments = bundle(26)
+        with pytest.raises(TooManyCrossingsError, match="pairs of segments meet") as caught:
+            find_crossings(
+                np.concatenate([points + i * 1e-3 for i in range(4)]),
+                [(a + i * len(points), b + i * len(points)) for i in range(4) for a, b in segments],
+            )
+        assert len(caught.value.indices) == 2
+
+    def test_what_comes_along(self) -> None:
+        square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+        pslg = PSLG(
+            [*square, (0, 2), (4, 2), (2, 0), (2, 4)],
+            [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (6, 7)],
+            holes=[(1, 1)],
+            regions=[(3, 3, 7.0, 0.5)],
+            point_markers=range(8),
+            segment_markers=[1, 2, 3, 4, 5, 6],
+            point_attributes=[[float(x), 1.0] for x, _ in [*square, (0, 2), (4, 2), (2, 0), (2, 4)]],
+            rule="even-odd",
+        )
+        arranged = arrange(pslg)
+        noded = arranged.pslg
+        assert faults(arranged) == []
+        assert noded.points[8:].tolist() == [[2.0, 2.0]]
+        assert noded.point_markers is not None
+        assert noded.point_markers.tolist() == [*range(8), 0]
+        assert noded.point_attributes is not None
+        assert noded.point_attributes[8:].tolist() == [[2.0, 1.0]]
+        assert noded.segment_markers is not None
+        assert noded.segment_markers.tolist() == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6]
+        assert (noded.holes.tolist(), noded.regions.tolist(), noded.rule) == ([[1, 1]], [[3, 3, 7, 0.5]], pslg.rule)
+        assert [arranged.chain(i).tolist() for i in (0, 4, 5)] == [[0, 6, 1], [4, 8, 5], [6, 8, 7]]
+        assert (arranged.rounding, arranged.crossings, arranged.grid) == (Rounding.EXACT, 1, (0.0, 0.0))
+
+    def test_overlapping_segments_become_one(self) -> None:
+        arranged = arrange(PSLG([(0, 0), (3, 0), (1, 0), (2, 0), (1, 0)], [(0, 1), (3, 2), (0, 4)]))
+        assert arranged.pslg.segments.tolist() == [[0, 2], [2, 3], [3, 1]]
+        assert arranged.incidence.tolist() == [[0, 0], [0, 2], [1, 0], [1, 1], [2, 0]]
+        assert arranged.chain(1).tolist() == [3, 2]
