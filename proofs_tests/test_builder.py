@@ -57,7 +57,7 @@ class TestEditing:
     def test_machine(self) -> None:
         run_state_machine_as_test(Editing, settings=STEPS)
 
-    @pytest.mark.parametrize("fault", ["unflipped", "unconstrained", "stale spoke", "forgotten group"])
+    @pytest.mark.parametrize("fault", ["unflipped", "unconstrained", "half a segment", "forgotten group"])
     def test_control_a_seeded_fault_is_found(self, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
         name, faulty = FAULTS[fault]
         real = getattr(module, name)
@@ -93,11 +93,10 @@ def unconstrained(real: Step, draft: Draft, *rest: object) -> None:
         draft.plane.fixed[int(draft.tally[EDGES]) - 3] = False
 
 
-def stale_spoke(real: Step, draft: Draft, v: int) -> None:
-    """Delete, but let the neighbors' spokes be what they were."""
-    before = draft.plane.spoke.copy()
-    real(draft, v)
-    draft.plane.spoke[:] = before
+def half_a_segment(real: Step, draft: Draft, order: object, pieces: npt.NDArray[np.int32]) -> None:
+    """Insert a segment, but forget to constrain its last edge."""
+    real(draft, order, pieces)
+    draft.plane.fixed[pieces[-1, 0]] = False
 
 
 def forgotten_group(real: Step, draft: Draft, *rest: object) -> None:
@@ -110,7 +109,7 @@ def forgotten_group(real: Step, draft: Draft, *rest: object) -> None:
 FAULTS: dict[str, tuple[str, Step]] = {
     "unflipped": ("remove_vertex", unflipped),
     "unconstrained": ("insert_vertices", unconstrained),
-    "stale spoke": ("remove_vertex", stale_spoke),
+    "half a segment": ("add_segment", half_a_segment),
     "forgotten group": ("add_segment", forgotten_group),
 }
 

@@ -33,6 +33,7 @@ from exactmesh import (
 )
 from exactmesh import Triangulation as Mesh
 from exactmesh.ids import OUTSIDE
+from exactmesh.verify import Property, Verdict
 
 Points = Sequence[tuple[float, float]]
 
@@ -341,6 +342,8 @@ class TestConstrained:
         with pytest.raises(InadmissibleError, match="segment 1 \\(1, 3\\) is no chain of edges") as refused:
             lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(0, 1), (1, 3), (0, 2)])
         assert refused.value.indices == (1,)
+        assert refused.value.report.verdict(Property.SEGMENTS_PRESENT) is Verdict.FAILS
+        assert not refused.value.report.ok
         with pytest.raises(PSLGError, match="segment 0 begins and ends"):
             lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(1, 1)])
 
