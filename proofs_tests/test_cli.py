@@ -11,12 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from exactmesh import PSLG, cli, constrained_delaunay
 from exactmesh.cli import main
 from exactmesh.io import Mesh, read, read_pslg, write, write_pslg
-from exactmesh.verify import verify
+from exactmesh.verify import Report, verify
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.25)]
 THIN = [(0.0, 0.0), (4.0, -1.0), (8.0, 0.0), (4.0, 1.0)]
@@ -398,7 +399,10 @@ class TestDemo:
     def test_control_a_wrong_triangulation_is_a_violation(self, monkeypatch: pytest.MonkeyPatch) -> None:
         from exactmesh import demo as module
 
-        monkeypatch.setattr(module, "verify", lambda points, triangles, domain: verify(points, triangles[1:], domain=domain))
+        def verify_less(points: npt.ArrayLike, triangles: npt.NDArray[np.int32], domain: PSLG | None) -> Report:
+            return verify(points, triangles[1:], domain=domain)
+
+        monkeypatch.setattr(module, "verify", verify_less)
         assert main(["demo"]) == 1
 
     def test_a_file_in_the_way(self, capsys: pytest.CaptureFixture[str]) -> None:
