@@ -384,8 +384,9 @@ class TestDemo:
     def test_whole(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["demo"]) == 0
         told = capsys.readouterr().out
-        assert re.search(r"delaunay +│ +holds +│ +holds", told)
-        for name in ("mosaic", "course"):
+        assert re.search(r"│ delaunay +│ +holds +│ +\(fails\) +│ +holds +│", told)
+        assert re.search(r"constrained_delaunay +│ +│ +holds +│", told)
+        for name in ("mosaic", "lake", "course"):
             assert f"exactmesh-demo/{name}.png" in told
             assert Path(f"exactmesh-demo/{name}.png").read_bytes().startswith(b"\x89PNG")
 
@@ -397,7 +398,7 @@ class TestDemo:
     def test_control_a_wrong_triangulation_is_a_violation(self, monkeypatch: pytest.MonkeyPatch) -> None:
         from exactmesh import demo as module
 
-        monkeypatch.setattr(module, "verify", lambda points, triangles: verify(points, triangles[1:]))
+        monkeypatch.setattr(module, "verify", lambda points, triangles, domain: verify(points, triangles[1:], domain=domain))
         assert main(["demo"]) == 1
 
     def test_a_file_in_the_way(self, capsys: pytest.CaptureFixture[str]) -> None:

@@ -261,7 +261,8 @@ class TestEveryOrder:
 
 @pytest.mark.obligation("M5", "segments that cross are refused, whatever the order, and only those")
 class TestCrossings:
-    """Segments are refused exactly when two of them meet in one point inside both that is no vertex."""
+    """Segments are refused exactly when two of them meet in one point inside both that is no vertex; all these pairs
+    are named, and no others."""
 
     @given(graphs(), st.data())
     def test_one_more_segment(self, graph: Graph, data: st.DataObject) -> None:
@@ -272,18 +273,34 @@ class TestCrossings:
             pslg = PSLG(graph.points, [*graph.segments[:at], extra, *graph.segments[at:]])
         except ExactMeshError:
             return
-        points, segments = distinct(Graph(graph.points, [*graph.segments, extra]))
-        old = constrained_oracle.noded(points, segments[:-1])
-        new = constrained_oracle.noded(points, segments[-1:])
-        crossing = any(constrained_oracle.crosses(points, p, q) for p in old for q in new)
+        points, segments = distinct(Graph(graph.points, [tuple(row) for row in pslg.segments.tolist()]))
+        pieces = [constrained_oracle.noded(points, [segment]) for segment in segments]
+        crossing = [
+            [i, j]
+            for i, j in combinations(range(len(pieces)), 2)
+            if any(constrained_oracle.crosses(points, p, q) for p in pieces[i] for q in pieces[j])
+        ]
+        found: list[list[int]] = []
         try:
             constrained_delaunay(pslg, carve=False)
         except CollinearPointsError:
             return
-        except CrossingError:
-            assert crossing
-        else:
-            assert not crossing
+        except CrossingError as error:
+            found = error.pairs.tolist()
+        assert found == crossing
+
+    def test_control_a_vertex_at_the_crossing(self) -> None:
+        """Two segments that meet in a vertex are not to blame for two others that cross."""
+        points = [(0, 0), (2, 2), (0, 2), (2, 0), (4, 0), (6, 2), (4, 2), (6, 0)]
+        segments = [(0, 1), (2, 3), (4, 5), (6, 7)]
+        for more, pairs in (
+            ([], [[0, 1], [2, 3]]),
+            ([(1, 1)], [[2, 3]]),
+            ([(1, np.nextafter(1, 2))], [[0, 1], [2, 3]]),
+        ):
+            with pytest.raises(CrossingError) as caught:
+                constrained_delaunay(PSLG([*points, *more], segments), carve=False)
+            assert caught.value.pairs.tolist() == pairs
 
 
 class Pairs:

@@ -13,12 +13,14 @@ from proofs_tests.oracles import RationalPoint, rationals
 
 from exactkernel.types import FloatArray
 from exactmesh import PSLG, memory
+from exactmesh.chains import pieces_of
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.crossing_points import CrossingRounder
 from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
 from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
-from exactmesh.noding import Graph
-from exactmesh.snapping import grid_of, snap
+from exactmesh.noding import Drawing as Drawn
+from exactmesh.noding import drawing_of
+from exactmesh.snapping import grid_of, snapped
 
 #: Corpus number 7: three segments through nearly one point.
 SEVEN = np.array(
@@ -243,29 +245,32 @@ class TestSnapping:
     leads through exactly the hot pixels that its segment meets; the result is planar."""
 
     @staticmethod
-    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Graph:
+    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Drawn:
         representative = first_of_each(points, lexicographic_order(points))
         ends = representative[np.array(segments, dtype=np.int32).reshape(-1, 2)]
-        return snap(points, ends, representative)
+        drawing = drawing_of(points, ends, representative)
+        rows = np.arange(len(drawing.segments))
+        return snapped(drawing, np.ones(len(rows), dtype=np.bool_), rows, grid_of(points))[0]
 
     @given(drawings())
     def test_small_drawings(self, drawing: Drawing) -> None:
         points, segments = np.array(drawing[0]), drawing[1]
         if not segments:
             return
-        graph, grid = self.snapped(points, segments), grid_of(points)
+        drawing, grid = self.snapped(points, segments), grid_of(points)
+        chains = drawing.chains(np.arange(len(segments)))
         exact = rationals(points.tolist())
         ends = [(exact[a], exact[b]) for a, b in segments]
         crossings = [p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None]
         hot = {oracle.pixel(p, grid) for p in [*exact, *crossings]}
-        cells = [oracle.pixel(p, grid) for p in rationals(graph.points.tolist())]
+        cells = [oracle.pixel(p, grid) for p in rationals(drawing.points.tolist())]
         assert set(cells) == hot
         for i, s in enumerate(ends):
-            chain = graph.chains.vertices[graph.chains.start[i] : graph.chains.start[i + 1]].tolist()
+            chain = chains.vertices[chains.start[i] : chains.start[i + 1]].tolist()
             met = {cell for cell in hot if oracle.segment_meets_pixel(s, cell, grid)}
             assert {cells[v] for v in chain} == met
             assert len(chain) == len(met)
-        assert oracle.is_planar(graph.points.tolist(), graph.pieces.ends.tolist())
+        assert oracle.is_planar(drawing.points.tolist(), pieces_of(chains).ends.tolist())
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))

@@ -16,9 +16,24 @@ from proofs_tests.oracles import RationalPoint
 
 from exactkernel import incircle
 from exactkernel.jit import COMPILED
-from exactmesh import Edge, Primal, QuadEdge, delaunay, flip, is_flippable, is_locally_delaunay, lawson
-from exactmesh.errors import TopologyError
+from exactmesh import (
+    PSLG,
+    Edge,
+    InadmissibleError,
+    Primal,
+    PSLGError,
+    QuadEdge,
+    TopologyError,
+    constrained_delaunay,
+    delaunay,
+    flip,
+    is_flippable,
+    is_locally_delaunay,
+    lawson,
+)
+from exactmesh import Triangulation as Mesh
 from exactmesh.ids import OUTSIDE
+from exactmesh.verify import Property, Verdict
 
 Points = Sequence[tuple[float, float]]
 
@@ -278,6 +293,73 @@ class TestManyPoints:
         mesh = lawson(points, start)
         assert mesh.canonical() == delaunay(points).canonical()
         assert mesh.work.flips in (0, (side - 1) ** 2)
+
+
+@pytest.mark.bounds
+@pytest.mark.obligation("M5", "constrained flips end in THE constrained Delaunay triangulation, from every start")
+class TestConstrained:
+    """From any triangulation in which the segments are edges, the flips of the others end in the triangulation that
+    inserting the segments gives."""
+
+    @pytest.mark.parametrize("name", ["convex hexagon", "cocircular octagon", "3 x 3 grid"])
+    def test_every_start(self, name: str) -> None:
+        points = COUNTS[name][0]
+        n = len(points)
+        expected: dict[tuple[int, int], Triangulation] = {}
+        flips = set()
+        for start in islice(triangulations(points), 0, None if COMPILED else 6):
+            edges = sorted({(min(a, b), max(a, b)) for t in start for a, b in (t[:2], t[1:], t[::2])})
+            for segment in edges[:: 1 if n < 8 else 5]:
+                if segment not in expected:
+                    graph = constrained_delaunay(PSLG(points, [segment]), carve=False)
+                    expected[segment] = canonical_triangles(graph.triangles.tolist())
+                mesh = lawson(points, start, segments=[segment])
+                assert canonical_triangles(mesh.triangles.tolist()) == expected[segment]
+                flips.add(mesh.work.flips)
+        assert len(flips) > 1
+        assert len(set(expected.values())) > 1
+
+    @settings(max_examples=settings().max_examples // 3)
+    @given(small_grid_sets(), st.integers(0, 2**32))
+    def test_grid_sets(self, points: list[tuple[int, int]], seed: int) -> None:
+        """Random triangulations with random edges, and with segments that are chains of several edges."""
+        random = np.random.default_rng(seed)
+        surface = delaunay(points).quad_edge()
+        for index in random.permutation([edge.index for edge in surface.edges()] * 3).tolist():
+            if is_flippable(points, surface.edge(index)):
+                flip(points, surface.edge(index))
+        edges = [(edge.org, edge.dest) for edge in surface.edges()]
+        random.shuffle(edges)
+        start = surface.triangles()
+        mesh = lawson(points, start, segments=edges[:4])
+        assert_the_same(mesh, constrained_delaunay(PSLG(points, edges[:4]), carve=False))
+        a, b = random.permutation(len(points))[:2].tolist()
+        long = constrained_delaunay(PSLG(points, [(a, b)]), carve=False)
+        assert_the_same(lawson(points, long.triangles, segments=[(a, b)]), long)
+
+    def test_a_segment_that_is_no_chain_is_named(self) -> None:
+        square = [(0, 0), (4, 0), (4, 4), (0, 4)]
+        with pytest.raises(InadmissibleError, match="segment 1 \\(1, 3\\) is no chain of edges") as refused:
+            lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(0, 1), (1, 3), (0, 2)])
+        assert refused.value.indices == (1,)
+        assert refused.value.report.verdict(Property.SEGMENTS_PRESENT) is Verdict.FAILS
+        assert not refused.value.report.ok
+        with pytest.raises(PSLGError, match="segment 0 begins and ends"):
+            lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(1, 1)])
+
+    def test_control_the_segment_is_what_keeps_an_edge(self) -> None:
+        points, start = [(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)]
+        free, kept = lawson(points, start), lawson(points, start, segments=[(2, 0)])
+        assert (free.work.flips, kept.work.flips) == (1, 0)
+        assert free.canonical() != kept.canonical()
+
+
+def assert_the_same(one: Mesh, other: Mesh) -> None:
+    one, other = one.canonical(), other.canonical()
+    assert one == other
+    assert one.segment_incidence.tolist() == other.segment_incidence.tolist()
+    assert one.vertex_markers.tolist() == other.vertex_markers.tolist()
+    assert one.segment_markers.tolist() == other.segment_markers.tolist()
 
 
 class TestVerticesWithoutCoordinates:

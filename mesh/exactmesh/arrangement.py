@@ -11,9 +11,9 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.chain_distance import is_anything_moved, largest_distances_squared
 from exactmesh.chains import Chains, LongArray
 from exactmesh.columns import MarkerArray, frozen
-from exactmesh.noding import Graph, node_by_rounding
+from exactmesh.planar import Graph, planar_graph
 from exactmesh.pslg import PSLG, Carve
-from exactmesh.snapping import grid_of, snap
+from exactmesh.snapping import grid_of
 
 __all__ = ["Arrangement", "Rounding", "arrange"]
 
@@ -101,19 +101,6 @@ def _ends(pslg: PSLG) -> tuple[FloatArray, FloatArray]:
     return pslg.points[pslg.segments[:, 0]], pslg.points[pslg.segments[:, 1]]
 
 
-def _limit_squared(grid: tuple[float, float]) -> mpq:
-    """Return the square of half the diagonal of the grid's cells."""
-    return (mpq(grid[0]) * mpq(grid[0]) + mpq(grid[1]) * mpq(grid[1])) / 4
-
-
-def _is_near(pslg: PSLG, graph: Graph) -> bool:
-    """Tell whether every chain is as near to its segment as snapping would promise; true after one rounding."""
-    if graph.rounds <= 1:
-        return True
-    distances = largest_distances_squared(graph.points, *_ends(pslg), graph.chains)
-    return max(distances) <= _limit_squared(grid_of(pslg.points))
-
-
 def _owners(graph: Graph, count: int) -> LongArray:
     """Return for each point from ``count`` on the first segment whose chain it is on."""
     lengths = np.diff(graph.chains.start)
@@ -167,7 +154,7 @@ def _planar_pslg(pslg: PSLG, graph: Graph) -> PSLG:
 
 
 def _is_unchanged(pslg: PSLG, graph: Graph) -> bool:
-    return graph.rounds == 0 and len(graph.pieces.ends) == len(pslg.segments)
+    return not graph.is_snapped and len(graph.chains.vertices) == 2 * len(pslg.segments) == 2 * len(graph.pieces.ends)
 
 
 def arrange(pslg: PSLG) -> Arrangement:
@@ -194,11 +181,9 @@ def arrange(pslg: PSLG) -> Arrangement:
     ([[1.5, 0.5]], [0, 4, 1])
     """
     ends = pslg.representative[pslg.segments]
-    graph = node_by_rounding(pslg.points, ends, pslg.representative)
-    rounding, grid = Rounding.NEAREST, grid_of(pslg.points)
-    if graph is None or not _is_near(pslg, graph):
-        graph, rounding = snap(pslg.points, ends, pslg.representative), Rounding.SNAPPED
-    elif not is_anything_moved(graph.points, *_ends(pslg), graph.chains):
+    graph, grid = planar_graph(pslg.points, ends, pslg.representative), grid_of(pslg.points)
+    rounding = Rounding.SNAPPED if graph.is_snapped else Rounding.NEAREST
+    if not graph.is_snapped and not is_anything_moved(graph.points, *_ends(pslg), graph.chains):
         rounding, grid = Rounding.EXACT, (0.0, 0.0)
     return Arrangement(
         pslg=pslg if _is_unchanged(pslg, graph) else _planar_pslg(pslg, graph),

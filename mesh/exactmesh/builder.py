@@ -1,6 +1,5 @@
 """A constrained Delaunay triangulation that can be edited step by step, and frozen at any time."""
 
-import math
 import operator
 from dataclasses import replace
 from itertools import islice
@@ -11,7 +10,8 @@ import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
 from exactkernel.context import chunk_size
-from exactkernel.errors import ShapeError, shown
+from exactkernel.coordinates import doubles_of
+from exactkernel.errors import CoordinateError, shown
 from exactkernel.orient2d import orient2d
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import Coordinate, FloatArray, IntArray, PointLike
@@ -54,14 +54,12 @@ _CHUNK = 1 << 15  # points between two looks at Ctrl-C, where predicates are fas
 _NAMED = 3  # segments that a message spells out
 
 
-def _row(x: object, y: object) -> FloatArray:
+def _row(point: PointLike) -> FloatArray:
     """Return a point as an array (1, 2) of finite doubles."""
-    if type(x) is float and type(y) is float and math.isfinite(x) and math.isfinite(y):
-        return np.array([[x, y]])
-    try:
-        return finite_points(cast("npt.ArrayLike", [x if y is None else (x, y)]), "point")
-    except TypeError:
-        raise ShapeError(f"a point is a pair of coordinates, not {shown(x if y is None else (x, y))}") from None
+    exact = doubles_of(point)
+    if exact is None:
+        raise CoordinateError(f"{shown(point)} would be rounded to doubles")
+    return np.array([exact])
 
 
 def _with_points(draft: Draft, points: FloatArray, first: int) -> Draft:
@@ -104,8 +102,8 @@ class TriangulationBuilder:
     (1, 2)
     >>> builder.delete_vertex(4)
     Traceback (most recent call last):
-    exactmesh.errors.ConstrainedVertexError: vertex 4 cannot be deleted: segments 0 (0, 2), 1 (1, 4), 2 (4, 3) end in \
-it or pass through it
+    exactmesh.errors.ConstrainedVertexError: vertex 4 cannot be deleted: it lies on segments 0 (0, 2), 1 (1, 4), \
+2 (4, 3)
     """
 
     _draft: Draft
@@ -179,7 +177,7 @@ it or pass through it
         >>> [builder.insert_point(*p) for p in [(0, 0), (2, 0), (0, 2), (2, 2), (2, 0)]]
         [0, 1, 2, 3, 1]
         """
-        row = _row(x, y)
+        row = _row(cast("PointLike", x if y is None else (x, y)))
         if self._draft.tally[EDGES] == 0:
             return Vertex(self._insert_flat(row))
         p = int(self._draft.tally[NUMBERS])
@@ -261,7 +259,7 @@ it or pass through it
         """Delete a vertex, on the hull or not. The numbers of the others stay; this one is not used again.
 
         Raises:
-            ConstrainedVertexError: segments end in the vertex, or pass through it; ``indices`` names them.
+            ConstrainedVertexError: it lies on segments, at an end or inside of them; ``indices`` names them.
             TopologyError: there is no such vertex.
 
         About O(d log d) for d neighbors.
@@ -341,8 +339,9 @@ it or pass through it
         if segments:
             named = ", ".join(f"{s} {tuple(self._draft.ends[s].tolist())}" for s in segments[:_NAMED])
             more = f" and {len(segments) - _NAMED} more" if len(segments) > _NAMED else ""
+            which = "segment" if len(segments) == 1 else "segments"
             raise ConstrainedVertexError(
-                f"vertex {v} cannot be deleted: segments {named}{more} end in it or pass through it", indices=segments
+                f"vertex {v} cannot be deleted: it lies on {which} {named}{more}", indices=segments
             )
 
     # As long as all vertices lie on one line, there is nothing but lists.

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.coincident import lexicographic_order
 
-__all__ = ["Chains", "Pieces", "chains_of", "distinct", "pieces_of"]
+__all__ = ["Chains", "Pieces", "chains_through", "distinct", "pieces_of"]
 
 LongArray = npt.NDArray[np.int64]
 
@@ -47,7 +47,7 @@ def distinct(keys: LongArray) -> LongArray:
     return keys[np.append(True, keys[1:] != keys[:-1])] if keys.size else keys
 
 
-def chains_of(points: FloatArray, begins: FloatArray, ends: FloatArray, segment: LongArray, vertex: IntArray) -> Chains:
+def _sorted_chains(points: FloatArray, begins: FloatArray, ends: FloatArray, segment: LongArray, vertex: IntArray) -> Chains:
     """Return the chain of every segment, its vertices in order, each once.
 
     Args:
@@ -70,6 +70,42 @@ def chains_of(points: FloatArray, begins: FloatArray, ends: FloatArray, segment:
     place = np.where(is_reversed[segment], last - place, place)
     vertices = np.where(is_falling[segment] == 1, falling[place], rising[place])
     return Chains(np.searchsorted(segment, np.arange(count + 1)), vertices.astype(np.int32))
+
+
+def _marked(rows: npt.NDArray[np.integer], count: int) -> npt.NDArray[np.bool_]:
+    mask = np.zeros(count, dtype=np.bool_)
+    mask[rows] = True
+    return mask
+
+
+def chains_through(
+    points: FloatArray, begins: FloatArray, finishes: FloatArray, ends: IntArray, segment: LongArray, vertex: LongArray
+) -> Chains:
+    """Return the chain of every segment; only those with something inside cost more than a copy.
+
+    Args:
+        points: float64 (v, 2), where the vertices are now; those in use lie in different places.
+        begins, finishes: float64 (s, 2), where the segments began and ended when nothing was rounded.
+        ends: int32 (s, 2), the vertices there; twice the same one is a chain of one vertex.
+        segment, vertex: (k,), which other vertices lie on which segment.
+    """
+    lengths = 1 + (ends[:, 0] != ends[:, 1])
+    is_busy = _marked(segment, len(ends))
+    busy = np.flatnonzero(is_busy)
+    if busy.size:
+        vertex = np.concatenate([ends[busy].reshape(-1), vertex])
+        used = np.flatnonzero(_marked(vertex, len(points)))
+        number, position = np.empty(len(ends), dtype=np.int64), np.empty(len(points), dtype=np.int32)
+        number[busy], position[used] = np.arange(len(busy)), np.arange(len(used))
+        owner = np.concatenate([np.repeat(np.arange(len(busy)), 2), number[segment]])
+        inner = _sorted_chains(points[used], begins[busy], finishes[busy], owner, position[vertex])
+        lengths[busy] = np.diff(inner.start)
+    start = np.append(0, np.cumsum(lengths))
+    vertices = np.empty(start[-1], dtype=np.int32)
+    vertices[start[:-1]], vertices[start[1:] - 1] = ends[:, 0], ends[:, 1]
+    if busy.size:
+        vertices[np.repeat(is_busy, lengths)] = used[inner.vertices]
+    return Chains(start, vertices)
 
 
 def pieces_of(chains: Chains) -> Pieces:

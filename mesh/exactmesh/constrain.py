@@ -17,7 +17,7 @@ from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import IntArray
 from exactmesh.assembly import Task, assembled, cut_out, in_order, of_source
 from exactmesh.cavity import split_along
-from exactmesh.crossings import Meeting, arrange, find_crossings
+from exactmesh.crossings import arrange, crossing_pairs
 from exactmesh.delaunay import Insertion, Progress, insert_points
 from exactmesh.edgealgebra import EdgeArray, dest
 from exactmesh.errors import ChoiceError, CrossingError
@@ -225,8 +225,7 @@ def constrained_delaunay(
     mesh = triangulated(Task(pslg, pslg, None, rule), seed, progress)
     if mesh is None:
         if treatment is Crossings.ERROR:
-            found = find_crossings(pslg.points, pslg.segments)
-            raise CrossingError(found.pairs[found.kinds == Meeting.CROSSING])
+            raise CrossingError(crossing_pairs(pslg.points, pslg.segments))
         arrangement = arrange(pslg)
         mesh = triangulated(Task(arrangement.pslg, pslg, arrangement, rule), seed, progress)
         assert mesh is not None  # an arrangement is planar

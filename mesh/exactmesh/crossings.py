@@ -10,15 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
+from exactkernel.batch import orient2d_batch
 from exactkernel.errors import DegenerateError
+from exactkernel.types import FloatArray, IntArray
 from exactmesh.arrangement import Arrangement, Rounding, arrange
 from exactmesh.chains import distinct
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.columns import MarkerArray, frozen, indices_of
+from exactmesh.crossing_points import CrossingRounder
 from exactmesh.memory import limited
 from exactmesh.segment_meetings import Meeting, meetings
 
-__all__ = ["Arrangement", "Meeting", "Rounding", "SegmentPairs", "arrange", "find_crossings"]
+__all__ = ["Arrangement", "Meeting", "Rounding", "SegmentPairs", "arrange", "crossing_pairs", "find_crossings"]
 
 _BYTES_PER_PAIR = 40  # of the portions, the keys and their sort
 
@@ -81,3 +84,22 @@ def find_crossings(points: npt.ArrayLike, segments: npt.ArrayLike) -> SegmentPai
     found = distinct(np.concatenate([np.empty(0, np.int64), *keys]))
     pairs = np.stack([found >> 33, found >> 2 & (2**31 - 1)], axis=1)
     return SegmentPairs(frozen(pairs), frozen((found & 3).astype(np.int8)))
+
+
+def crossing_pairs(points: FloatArray, segments: IntArray) -> MarkerArray:
+    """Return the pairs of segments, int64 (k, 2), that cross where no point is: those that no triangulation has both.
+
+    Where a point lies on both, it is a vertex of both. It is a double, so the crossing is, too, and rounds to itself.
+    """
+    found = find_crossings(points, segments)
+    pairs = found.pairs[found.kinds == Meeting.CROSSING]
+    first, second = pairs.astype(np.int32).T
+    places = CrossingRounder(points, segments)(first, second)
+    candidates = np.concatenate([points, places])
+    at = first_of_each(candidates, lexicographic_order(candidates))[len(points) :]
+    missed = at >= len(points)
+    for side in (first, second):
+        ends = candidates[segments[side]]
+        missed |= orient2d_batch(ends[:, 0], ends[:, 1], candidates[at]) != 0
+    rest: MarkerArray = pairs[missed]
+    return rest

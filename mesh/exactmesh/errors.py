@@ -59,7 +59,7 @@ class CollinearPointsError(ExactMeshError):
 
 
 class ConstrainedVertexError(ExactMeshError):
-    """A vertex cannot be deleted, for segments end in it or pass through it: ``indices`` names them."""
+    """A vertex cannot be deleted, for it lies on segments: ``indices`` names them."""
 
 
 class SeedError(ExactMeshError):

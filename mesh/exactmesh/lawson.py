@@ -173,16 +173,17 @@ def _flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, fixed
     return flips
 
 
-def _checked(points: FloatArray, corners: IntArray) -> Report:
-    """Verify that the triangles are a triangulation of the points' hull."""
-    report = verify(points, corners, claims=_TRIANGULATION)
-    if not report.ok:
-        fault = next(v for v in report.violations if v.property in (*report.claims, Property.EDGE_MANIFOLD))
-        raise InadmissibleError(
-            f"the triangles are no triangulation of the points' hull: {fault.message}",
-            report=report,
-            indices=fault.triangles or fault.vertices,
-        )
+def _checked(points: FloatArray, corners: IntArray, segments: IntArray | None) -> Report:
+    """Verify that the triangles are a triangulation of the points' hull; the report tells about the segments, too."""
+    claims = _TRIANGULATION if segments is None else (*_TRIANGULATION, Property.SEGMENTS_PRESENT)
+    report = verify(points, corners, segments=segments, claims=claims)
+    for fault in () if report.ok else report.violations:
+        if fault.property in (*_TRIANGULATION, Property.EDGE_MANIFOLD):
+            raise InadmissibleError(
+                f"the triangles are no triangulation of the points' hull: {fault.message}",
+                report=report,
+                indices=fault.triangles or fault.vertices,
+            )
     return report
 
 
@@ -235,8 +236,8 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike, *, segments: npt.Arr
     if len(given) < 3:
         raise TooFewPointsError(f"{len(given)} points span no triangle; at least 3 are needed")
     corners = vertex_indices(triangles)
-    report = _checked(given, corners)
     graph = PSLG(given, () if segments is None else segments)
+    report = _checked(given, corners, None if segments is None else graph.segments)
     ring, org, face = rings_of(corners, neighbors_of(corners))
     xy, k = scaled_into_window(given)
     outer = face == OUTSIDE

@@ -1,8 +1,8 @@
 """Noding by rounding: crossings become their nearest doubles, points of the input stay where they are.
 
 That bends the segments a little, and a bent one may meet others that it did not meet before. Then the pieces are noded
-again, until no two meet but in common ends, which is the usual end after one round or two; or for as many rounds as are
-worth it before the whole drawing is snapped to a grid (snapping.py).
+again, until no two meet but in common ends, which is the usual end after one round or two. A meeting that is new has a
+piece in it that is new: so after the first round only the neighbourhood of the segments that changed is searched.
 """
 
 from typing import NamedTuple
@@ -14,38 +14,82 @@ from exactkernel.context import Context, scaled_into_window
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.chains import Chains, Pieces, chains_of, distinct, pieces_of
+from exactmesh.chains import Chains, Pieces, chains_through, distinct, pieces_of
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.crossing_points import CrossingRounder
 from exactmesh.memory import limited
 from exactmesh.segment_meetings import Meeting, is_inside, meetings
 
-__all__ = ["Graph", "LongArray", "alone_of", "chains_in", "node_by_rounding", "placed_meetings", "with_places"]
+__all__ = ["Drawing", "Incidences", "distinct_places", "drawing_of", "is_any", "met_in", "noded", "pieces_in"]
 
 LongArray = npt.NDArray[np.int64]
 
 _BYTES_PER_MEETING = 48  # of the incidences, after those of a portion were made distinct
-_ROUNDS = 8
 
 
-class Graph(NamedTuple):
-    """A planar graph: segments that meet in common ends only.
+class Drawing(NamedTuple):
+    """Segments, and the vertices that were found on them so far.
 
     Attributes:
-        points: float64 (v, 2): those of the input, then new ones.
+        given: float64 (n, 2): the points of the input.
+        segments: int32 (s, 2): ends by their representatives. A point that no segment ends in is one here, from itself
+            to itself, after all others.
+        points: float64 (v, 2): where the points are now, and vertices after them.
         representative: int32 (n,): the vertex of each point of the input, the first in its place.
-        chains: of the input's segments.
-        pieces: of the chains.
-        crossings: how many different places crossings were rounded to.
-        rounds: how often vertices were put in.
+        segment, vertex: int64 (k,): vertices on segments, besides their ends. An end may be repeated.
+        crossings: int64 (c,): the vertices that crossings of the input's segments became.
     """
 
+    given: FloatArray
+    segments: IntArray
     points: FloatArray
     representative: IntArray
-    chains: Chains
-    pieces: Pieces
-    crossings: int
-    rounds: int
+    segment: LongArray
+    vertex: LongArray
+    crossings: LongArray
+
+    @property
+    def begins(self) -> FloatArray:
+        """Where the segments began, before anything moved."""
+        return self.given[self.segments[:, 0]]
+
+    @property
+    def finishes(self) -> FloatArray:
+        """Where they ended."""
+        return self.given[self.segments[:, 1]]
+
+    def chains(self, rows: LongArray) -> Chains:
+        """Return the chains of some segments, which ascend."""
+        number = np.full(len(self.segments), -1)
+        number[rows] = np.arange(len(rows))
+        segment = number[self.segment]
+        mine = segment >= 0
+        at = self.segments[rows]
+        ends = self.representative[at]
+        return chains_through(
+            self.points, self.given[at[:, 0]], self.given[at[:, 1]], ends, segment[mine], self.vertex[mine]
+        )  # fmt: skip
+
+
+def drawing_of(points: FloatArray, segments: IntArray, representative: IntArray) -> Drawing:
+    """Return the drawing of segments, int32 (s, 2), given by the representatives, int32 (n,), of their ends."""
+    is_alone = representative == np.arange(len(representative))
+    is_alone[segments.reshape(-1)] = False
+    alone = np.flatnonzero(is_alone).astype(np.int32)
+    nothing = np.empty(0, dtype=np.int64)
+    segments = np.concatenate([segments, np.stack([alone, alone], axis=1)])
+    return Drawing(points, segments, points, representative, nothing, nothing, nothing)
+
+
+def pieces_in(chains: Chains, rows: LongArray) -> Pieces:
+    """Return the pieces of the chains of some segments, and chains of one vertex as pieces from it to itself."""
+    pieces = pieces_of(chains)
+    single = np.flatnonzero(np.diff(chains.start) == 1)
+    vertex = chains.vertices[chains.start[single]]
+    incidence = np.stack([len(pieces.ends) + np.arange(len(single)), single], axis=1)
+    incidence = np.concatenate([pieces.incidence, incidence])
+    incidence[:, 1] = rows[incidence[:, 1]]
+    return Pieces(np.concatenate([pieces.ends, np.stack([vertex, vertex], axis=1)]), incidence)
 
 
 class Incidences(NamedTuple):
@@ -105,14 +149,15 @@ def distinct_places(places: FloatArray) -> tuple[FloatArray, LongArray]:
     return ranked[begins], row
 
 
-def placed_meetings(points: FloatArray, segments: IntArray, place: CrossingRounder) -> Incidences:
-    """Find all meetings, and say what lies inside which segment; crossings where ``place`` puts them.
+def _placed_meetings(points: FloatArray, segments: IntArray, grid: tuple[float, float] | None) -> Incidences:
+    """Find all meetings, and say what lies inside which segment; crossings where a :class:`CrossingRounder` puts them.
 
     Args:
         points: float64 (v, 2).
         segments: int32 (m, 2), as :func:`meetings` asks for.
-        place: maps pairs of crossing segments to places.
+        grid: as for :class:`CrossingRounder`.
     """
+    place = CrossingRounder(points, segments, grid)
     xy, k = scaled_into_window(points)
     at_vertex, at_place, places, count = [np.empty(0, np.int64)], [], [np.empty((0, 2))], 0
     for portion in limited(meetings(points, segments), _BYTES_PER_MEETING):
@@ -134,72 +179,47 @@ def placed_meetings(points: FloatArray, segments: IntArray, place: CrossingRound
     return Incidences(segment, vertex, together, owner, row[local])
 
 
-def with_places(points: FloatArray, used: LongArray, places: FloatArray) -> tuple[FloatArray, LongArray]:
-    """Return the points and those places where no used point lies, and the vertex of each place."""
-    candidates = np.concatenate([points[used], places])
-    first = first_of_each(candidates, lexicographic_order(candidates))[len(used) :]
-    is_new = first >= len(used)
-    vertex = np.empty(len(places), dtype=np.int64)
-    vertex[~is_new] = used[first[~is_new]]
-    vertex[is_new] = len(points) + np.arange(is_new.sum())
-    return np.concatenate([points, places[is_new]]), vertex
-
-
-def _spread(pieces: Pieces, piece: LongArray, vertex: LongArray) -> tuple[LongArray, LongArray]:
-    """Return (segment, vertex) for (piece, vertex), once for every segment that the piece is a part of."""
+def _spread(pieces: Pieces, piece: LongArray, other: LongArray) -> tuple[LongArray, LongArray]:
+    """Return (segment, other) for (piece, other), once for every segment that the piece is a part of."""
     first = np.searchsorted(pieces.incidence[:, 0], np.arange(len(pieces.ends) + 1))
     lengths = (first[1:] - first[:-1])[piece]
     begin = np.repeat(first[:-1][piece] - (np.cumsum(lengths) - lengths), lengths)
     rows = begin + np.arange(lengths.sum())
-    return pieces.incidence[rows, 1], np.repeat(vertex, lengths)
+    return pieces.incidence[rows, 1], np.repeat(other, lengths)
 
 
-def alone_of(representative: IntArray, segments: IntArray) -> IntArray:
-    """Return the points that no segment ends in, each place once, as segments from themselves to themselves."""
-    ends = np.zeros(len(representative), dtype=np.bool_)
-    ends[segments.reshape(-1)] = True
-    alone = np.flatnonzero((representative == np.arange(len(representative))) & ~ends).astype(np.int32)
-    return np.stack([alone, alone], axis=1)
-
-
-def chains_in(
-    points: FloatArray, used: LongArray, begins: FloatArray, ends: FloatArray, segment: LongArray, vertex: LongArray
-) -> Chains:
-    """Return the chains; ``used`` are the points in use, which ascend and lie in different places."""
-    position = np.zeros(len(points), dtype=np.int32)
+def met_in(points: FloatArray, pieces: Pieces, grid: tuple[float, float] | None = None) -> Incidences:
+    """Return what lies inside which segment, when ``pieces`` are parts of segments and ``points`` their ends."""
+    is_used = np.zeros(len(points), dtype=np.bool_)
+    is_used[pieces.ends.reshape(-1)] = True
+    used = np.flatnonzero(is_used)
+    position = np.empty(len(points), dtype=np.int32)
     position[used] = np.arange(len(used))
-    start, vertices = chains_of(points[used], begins, ends, segment, position[vertex])
-    return Chains(start, used[vertices].astype(np.int32))
+    found = _placed_meetings(points[used], position[pieces.ends], grid)
+    segment, vertex = _spread(pieces, found.segment, used[found.vertex])
+    segment_of_place, place = _spread(pieces, found.segment_of_place, found.place)
+    return Incidences(segment, vertex, found.places, segment_of_place, place)
 
 
-def node_by_rounding(points: FloatArray, segments: IntArray, representative: IntArray) -> Graph | None:
-    """Return the graph, or None if it is not planar after some rounds.
+def is_any(found: Incidences) -> bool:
+    """Tell whether anything lies inside a segment."""
+    return bool(len(found.segment) or len(found.place))
 
-    Args:
-        points: float64 (n, 2).
-        segments: int32 (s, 2), ends by their representatives, none of them equal.
-        representative: int32 (n,).
-    """
-    begins, ends = points[segments[:, 0]], points[segments[:, 1]]
-    segment = np.repeat(np.arange(len(segments)), 2)
-    vertex = segments.reshape(-1).astype(np.int64)
-    alone = alone_of(representative, segments)
-    used = np.flatnonzero(representative == np.arange(len(representative)))
-    crossings = 0
-    for rounds in range(_ROUNDS + 1):
-        chains = chains_in(points, used, begins, ends, segment, vertex)
-        pieces = pieces_of(chains)
-        items = np.concatenate([pieces.ends, alone])
-        found = placed_meetings(points, items, CrossingRounder(points, items))
-        if not len(found.segment) and not len(found.place):
-            return Graph(points, representative, chains, pieces, crossings, rounds)
-        crossings = crossings if rounds else len(found.places)
-        points, vertex_of_place = with_places(points, used, found.places)
-        used = np.concatenate([used, np.arange(max(len(representative), used[-1] + 1), len(points))])
-        more = _spread(
-            pieces,
-            np.concatenate([found.segment, found.segment_of_place]),
-            np.concatenate([found.vertex, vertex_of_place[found.place]]),
-        )
-        segment, vertex = np.concatenate([segment, more[0]]), np.concatenate([vertex, more[1]])
-    return None
+
+def noded(drawing: Drawing, pieces: Pieces, found: Incidences) -> Drawing:
+    """Return the drawing with what was found among some pieces; a place where one of them ends is no new vertex."""
+    is_used = np.zeros(len(drawing.points), dtype=np.bool_)
+    is_used[pieces.ends.reshape(-1)] = True
+    used = np.flatnonzero(is_used)
+    candidates = np.concatenate([drawing.points[used], found.places])
+    first = first_of_each(candidates, lexicographic_order(candidates))[len(used) :]
+    is_new = first >= len(used)
+    vertex = np.empty(len(found.places), dtype=np.int64)
+    vertex[~is_new] = used[first[~is_new]]
+    vertex[is_new] = len(drawing.points) + np.arange(is_new.sum())
+    return drawing._replace(
+        points=np.concatenate([drawing.points, found.places[is_new]]),
+        segment=np.concatenate([drawing.segment, found.segment, found.segment_of_place]),
+        vertex=np.concatenate([drawing.vertex, found.vertex, vertex[found.place]]),
+        crossings=drawing.crossings if len(drawing.segment) else vertex,
+    )

@@ -43,6 +43,25 @@ def flood(neighbors: IntArray, fixed: BoolArray, label: IntArray, mark: int, sta
 
 
 @jit
+def flood_from(
+    neighbors: IntArray,
+    fixed: BoolArray,
+    label: IntArray,
+    seeds: IntArray,
+    old: int,
+    mark: int,
+    step: int,
+    stack: IntArray,
+) -> None:
+    """Flood from each seed, a triangle or negative, whose label is ``old`` by then: from seed i with mark + i step."""
+    for i in range(len(seeds)):
+        t = seeds[i]
+        if t >= 0 and label[t] == old:
+            stack[0] = t
+            flood(neighbors, fixed, label, mark + i * step, stack, 1)
+
+
+@jit
 def behind_hull(neighbors: IntArray, fixed: BoolArray, stack: IntArray) -> int:
     """Put the triangles that nothing separates from the outside onto the stack; return how many."""
     height = 0
@@ -111,17 +130,14 @@ def places_of(
     """
     place = np.zeros(len(neighbors), dtype=np.int32)
     stack = np.empty(len(neighbors), dtype=np.int32)
-    flood(neighbors, fixed, place, Place.EXTERIOR, stack, behind_hull(neighbors, fixed, stack))
+    flood(neighbors, fixed, place, int(Place.EXTERIOR), stack, behind_hull(neighbors, fixed, stack))
     holes, regions = np.split(seeds, [len(pslg.holes)])
     faults = _outside(FaultKind.HOLE_OUTSIDE, "hole", pslg.holes.tolist(), holes, place == Place.EXTERIOR)
     if rule is Carve.EVEN_ODD:
         exterior = place == Place.EXTERIOR
         separations(neighbors, odd, place, stack)
         place[exterior] = Place.EXTERIOR
-    for t in holes:
-        if t >= 0 and place[t] == Place.DOMAIN:
-            stack[0] = t
-            flood(neighbors, fixed, place, Place.HOLE, stack, 1)
+    flood_from(neighbors, fixed, place, holes, int(Place.DOMAIN), int(Place.HOLE), 0, stack)
     faults += _outside(FaultKind.REGION_OUTSIDE, "region", pslg.regions.tolist(), regions, place != Place.DOMAIN)
     return place, faults
 
@@ -144,6 +160,10 @@ def open_faults(pslg: PSLG, lost: IntArray) -> list[Fault]:
     return faults
 
 
+def _disagreement(first: int, later: int) -> Fault:
+    return Fault(FaultKind.REGIONS_DISAGREE, (first, later), f"regions {first} and {later} are in one face")
+
+
 def regions_of(pslg: PSLG, neighbors: IntArray, fixed: BoolArray, place: IntArray, seeds: IntArray) -> IntArray:
     """Return the region of each triangle, int32 (m,), or -1; ``seeds`` are the triangles of the regions' seeds. O(m).
 
@@ -152,14 +172,10 @@ def regions_of(pslg: PSLG, neighbors: IntArray, fixed: BoolArray, place: IntArra
     """
     region = np.where(place == Place.DOMAIN, np.int32(-1), np.int32(-2))
     stack = np.empty(len(neighbors), dtype=np.int32)
-    faults = []
-    for i, t in enumerate(seeds.tolist()):
-        first = int(region[t])
-        if first == -1:
-            stack[0] = t
-            flood(neighbors, fixed, region, i, stack, 1)
-        elif (pslg.regions[first, 2:] != pslg.regions[i, 2:]).any():
-            faults.append(Fault(FaultKind.REGIONS_DISAGREE, (first, i), f"regions {first} and {i} are in one face"))
-    if faults:
-        raise PSLGError(faults)
+    flood_from(neighbors, fixed, region, seeds, -1, 0, 1, stack)
+    first = region[seeds]
+    disagree = np.flatnonzero((pslg.regions[first, 2:] != pslg.regions[:, 2:]).any(axis=1))
+    if disagree.size:
+        pairs = np.stack([first[disagree], disagree], axis=1).tolist()
+        raise PSLGError([_disagreement(i, j) for i, j in pairs])
     return region

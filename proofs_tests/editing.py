@@ -1,0 +1,199 @@
+"""A machine that edits a triangulation at random and compares every step with a plain model of it."""
+
+from fractions import Fraction
+from itertools import combinations
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+from proofs_tests import kernel_oracle, oracles
+from proofs_tests.enumeration import CIRCLE_OF_EIGHT
+from proofs_tests.oracles import RationalPoint
+
+from exactmesh import (
+    PSLG,
+    CollinearPointsError,
+    ConstrainedVertexError,
+    CrossingError,
+    TooFewPointsError,
+    Triangulation,
+    TriangulationBuilder,
+    constrained_delaunay,
+    verify,
+)
+
+__all__ = ["Editing", "apexes_of", "crossing_point", "is_constrained_delaunay"]
+
+Segment = tuple[int, int]
+
+
+def crossing_point(a: RationalPoint, b: RationalPoint, c: RationalPoint, d: RationalPoint) -> RationalPoint | None:
+    """Return the point inside both ab and cd where they cross, if they do."""
+    if oracles.orient(a, b, c) * oracles.orient(a, b, d) >= 0 or oracles.orient(c, d, a) * oracles.orient(c, d, b) >= 0:
+        return None
+    t = oracles.orient(c, d, a) / (oracles.orient(c, d, a) - oracles.orient(c, d, b))
+    return a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
+
+
+def apexes_of(mesh: Triangulation) -> dict[frozenset[int], list[int]]:
+    """Return the third corners of the triangles at each edge."""
+    found: dict[frozenset[int], list[int]] = {}
+    for row in mesh.triangles.tolist():
+        for i in range(3):
+            found.setdefault(frozenset((row[i], row[(i + 1) % 3])), []).append(row[(i + 2) % 3])
+    return found
+
+
+def is_constrained_delaunay(mesh: Triangulation) -> bool:
+    """Tell by theorems A and E, in fractions: triangles counterclockwise, edges matched, areas those of the hull, and
+    each edge fixed or locally (perturbed) Delaunay."""
+    points = oracles.rationals(mesh.points.tolist())
+    triangles = [(a, b, c) for a, b, c in mesh.triangles.tolist()]
+    areas = [oracles.orient(*(points[v] for v in t)) for t in triangles]
+    if min(areas) <= 0 or sum(areas) != oracles.hull_area(points) or not oracles.is_edge_manifold(triangles):
+        return False
+    fixed = {frozenset(edge) for edge in mesh.segments.tolist()}
+    for edge, apexes in apexes_of(mesh).items():
+        if edge not in fixed and len(apexes) == 2:
+            a, b = edge
+            c, d = apexes
+            ccw = oracles.counterclockwise(points, (a, b, c))
+            if kernel_oracle.incircle_perturbed(*(points[v] for v in ccw), points[d]) > 0:
+                return False
+    return set(np.unique(mesh.triangles).tolist()) == set(range(len(points)))
+
+
+small = st.integers(0, 4).map(float)
+
+
+class Editing(RuleBasedStateMachine):
+    """The builder against two plain things: a dictionary of points, a list of segments."""
+
+    Builder: ClassVar[type[TriangulationBuilder]] = TriangulationBuilder
+
+    @initialize(points=st.lists(st.tuples(small, small), max_size=6))
+    def begin(self, points: list[tuple[float, float]]) -> None:
+        self.builder = self.Builder(points)
+        self.points = {points.index(p): p for p in points}
+        self.segments: list[Segment] = []
+        self.given = len(points)
+
+    def _insert(self, x: float, y: float) -> None:
+        there = [v for v, p in self.points.items() if p == (x, y)]
+        v = self.builder.insert_point(x, y)
+        assert v == (there[0] if there else self.given)
+        if not there:
+            self.points[v] = (x, y)
+            self.given += 1
+
+    @rule(x=small, y=small)
+    def insert_on_grid(self, x: float, y: float) -> None:
+        self._insert(x, y)
+
+    @rule(p=st.sampled_from(CIRCLE_OF_EIGHT))
+    def insert_on_circle(self, p: tuple[int, int]) -> None:
+        self._insert(float(p[0]), float(p[1]))
+
+    @rule(x=small, exponent=st.integers(-1070, 1020), y=small)
+    def insert_far(self, x: float, exponent: int, y: float) -> None:
+        self._insert((x + 1) * 2.0**exponent, y)
+
+    @rule(data=st.data(), step=st.sampled_from([-1.0, 0.5, 2.0]))
+    @precondition(lambda self: len(self.points) > 1)
+    def insert_on_a_line(self, data: st.DataObject, step: float) -> None:
+        (ax, ay), (bx, by) = (self.points[data.draw(st.sampled_from(sorted(self.points)))] for _ in range(2))
+        self._insert(ax + step * (bx - ax), ay + step * (by - ay))
+
+    @rule(points=st.lists(st.tuples(small, small), max_size=8))
+    def insert_many(self, points: list[tuple[float, float]]) -> None:
+        vertices = self.builder.insert_points(points).tolist()
+        for v, p in zip(vertices, points, strict=True):
+            there = [u for u, q in self.points.items() if q == p]
+            assert v == there[0] if there else v == self.given + points.index(p)
+            self.points[v] = p
+        self.given += len(points)
+
+    @rule(data=st.data())
+    @precondition(lambda self: len(self.points) > 1)
+    def insert_segment(self, data: st.DataObject) -> None:
+        u, v = data.draw(st.permutations(sorted(self.points)))[:2]
+        exact = dict(zip(self.points, oracles.rationals(self.points.values()), strict=True))
+        places = set(exact.values())
+        expected = []
+        for s, (a, b) in enumerate(self.segments):
+            x = crossing_point(exact[a], exact[b], exact[u], exact[v])
+            if x is not None and x not in places:
+                expected.append([s, len(self.segments)])
+        if expected:
+            with pytest.raises(CrossingError) as crossing:
+                self.builder.insert_segment(u, v)
+            assert crossing.value.pairs.tolist() == expected
+            return
+        number = self.builder.insert_segment(u, v)
+        same = [s for s, ends in enumerate(self.segments) if set(ends) == {u, v}]
+        assert number == (same[0] if same else len(self.segments))
+        if not same:
+            self.segments.append((u, v))
+
+    @rule(data=st.data())
+    @precondition(lambda self: self.points)
+    def delete(self, data: st.DataObject) -> None:
+        v = data.draw(st.sampled_from(sorted(self.points)))
+        exact = dict(zip(self.points, oracles.rationals(self.points.values()), strict=True))
+        expected = [s for s, (a, b) in enumerate(self.segments) if oracles.on_segment(exact[v], exact[a], exact[b])]
+        if expected:
+            with pytest.raises(ConstrainedVertexError) as constrained:
+                self.builder.delete_vertex(v)
+            assert list(constrained.value.indices) == expected
+            return
+        self.builder.delete_vertex(v)
+        del self.points[v]
+
+    @rule()
+    def thaw(self) -> None:
+        """Go on from what was frozen."""
+        try:
+            frozen = self.builder.triangulation()
+        except (TooFewPointsError, CollinearPointsError):
+            return
+        assert frozen.pslg is not None
+        self.builder = self.Builder.from_pslg(frozen.pslg)
+        name = {v: i for i, v in enumerate(sorted(self.points))}
+        self.points = {name[v]: p for v, p in self.points.items()}
+        self.segments = [(name[a], name[b]) for a, b in self.segments]
+        self.given = len(self.points)
+
+    def model(self) -> PSLG:
+        name = {v: i for i, v in enumerate(sorted(self.points))}
+        points = [self.points[v] for v in sorted(self.points)]
+        return PSLG(points, [(name[a], name[b]) for a, b in self.segments])
+
+    @invariant()
+    def is_the_same(self) -> None:
+        """THE constrained Delaunay triangulation of the model, named as the model has it; and the verifier agrees."""
+        if not hasattr(self, "points"):
+            return
+        assert self.builder.vertices.tolist() == sorted(self.points)
+        assert len(self.builder) == len(self.points)
+        assert self.builder.segments.tolist() == [[a, b] for a, b in self.segments]
+        try:
+            expected = constrained_delaunay(self.model(), carve=False)
+        except (TooFewPointsError, CollinearPointsError) as error:
+            with pytest.raises(type(error)):
+                self.builder.triangulation()
+            return
+        mesh = self.builder.triangulation()
+        assert mesh.canonical() == expected.canonical()
+        assert mesh.points.tolist() == expected.points.tolist()
+        assert mesh.segment_incidence.tolist() == expected.segment_incidence.tolist()
+        standing = {v: i for i, v in enumerate(sorted(self.points))}
+        assert mesh.representative.tolist() == [standing.get(v, mesh.representative[v]) for v in range(self.given)]
+        assert verify(mesh.points, mesh.triangles, segments=[(standing[a], standing[b]) for a, b in self.segments]).ok
+
+    def teardown(self) -> None:
+        """In the end, the same by brute force."""
+        points = oracles.rationals(getattr(self, "points", {}).values())
+        if any(oracles.orient(*three) != Fraction(0) for three in combinations(points, 3)):
+            assert is_constrained_delaunay(self.builder.triangulation())
