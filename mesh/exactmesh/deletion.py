@@ -5,7 +5,7 @@ edge from v to that corner can be flipped: it becomes the base of the ear. In th
 or it was on the hull, what is left of the polygon is the new hull, and v goes into the ghost vertex. That is a
 triangulation of the hole, though any; taken from the last ear to the first, each adds a corner to a polygon that is
 constrained Delaunay already, which is repaired by flips that all end in that corner. Random order keeps them few.
-Reference [Devillers 2002b], [Chew 1990].
+Reference [Chew 1990].
 """
 
 from exactkernel.jit import jit, jit_inline
