@@ -319,7 +319,7 @@ class TestMutations:
     """However a good graph is changed, the result is that of brute force, or a typed error names something of it."""
 
     @given(st.one_of(moved(), moved(), mangled()))
-    @settings(max_examples=500)
+    @settings(max_examples=250)
     def test_right_or_refused(self, arguments: Arguments) -> None:
         try:
             pslg = PSLG(**arguments)
@@ -333,7 +333,7 @@ class TestMutations:
         assert "\n" not in message
 
     @given(st.one_of(moved(), mangled()), st.sampled_from([False, Carve.SEEDS, Carve.EVEN_ODD]))
-    @settings(max_examples=150)
+    @settings(max_examples=100)
     def test_split(self, arguments: Arguments, carve: bool | Carve) -> None:
         """With crossings split nothing crosses any more: the result is a constrained triangulation of some graph."""
         try:

@@ -130,6 +130,7 @@ class TestVisibility:
     no vertex that they see: for grids, cocircular, collinear and extreme points, overlaps, T-junctions, duplicates."""
 
     @given(graphs())
+    @settings(max_examples=150)
     def test_brute_force(self, graph: Graph) -> None:
         points, segments = distinct(graph)
         try:
@@ -140,7 +141,7 @@ class TestVisibility:
         assert rows == constrained_oracle.constrained_triangles(points, segments)
 
     @given(graphs(most=8))
-    @settings(max_examples=40)
+    @settings(max_examples=25)
     def test_oracle_covers_the_hull(self, graph: Graph) -> None:
         """The oracle itself: its triangles cover the hull once, and contain every piece of a segment."""
         points, segments = distinct(graph)
@@ -166,6 +167,7 @@ class TestSegmentsArePresent:
     piece of each segment; chain(i) leads along segment i from its start to its end."""
 
     @given(graphs())
+    @settings(max_examples=120)
     def test_pieces(self, graph: Graph) -> None:
         points, segments = distinct(graph)
         try:
@@ -186,7 +188,7 @@ class TestSegmentsArePresent:
         assert mesh.segment_incidence.tolist() == sorted(expected)
 
     @given(graphs())
-    @settings(max_examples=100)
+    @settings(max_examples=60)
     def test_rows_follow_the_segments(self, graph: Graph) -> None:
         """Constrained edges come in the order of the first segment that they are part of, in its direction."""
         points, segments = distinct(graph)
@@ -231,7 +233,7 @@ class TestEveryOrder:
             assert constrained_delaunay(pslg, carve=False).canonical() == expected
 
     @given(graphs(), st.integers(0, 2**64), st.randoms(use_true_random=False))
-    @settings(max_examples=150)
+    @settings(max_examples=80)
     def test_any_order(self, graph: Graph, seed: int, random: st.DataObject) -> None:
         order = list(range(len(graph.points)))
         random.shuffle(order)  # type: ignore[attr-defined]  # hypothesis calls its Random a data object
@@ -246,7 +248,7 @@ class TestEveryOrder:
         assert same.canonical() == mesh.canonical()
 
     @given(graphs())
-    @settings(max_examples=100)
+    @settings(max_examples=60)
     def test_edges_that_are_there_change_nothing(self, graph: Graph) -> None:
         """Constraining edges of the Delaunay triangulation, or those of the result, leaves the triangles alone."""
         try:
@@ -265,6 +267,7 @@ class TestCrossings:
     are named, and no others."""
 
     @given(graphs(), st.data())
+    @settings(max_examples=150)
     def test_one_more_segment(self, graph: Graph, data: st.DataObject) -> None:
         index = st.integers(0, len(graph.points) - 1)
         extra = data.draw(st.tuples(index, index))
@@ -338,7 +341,7 @@ class TestEveryPair:
     """Any two segments: refused exactly when they cross in no vertex, else the triangles and pieces of brute force."""
 
     def test_brute_force(self, points: list[tuple[int, int]]) -> None:
-        pairs = Pairs(points, 2 if COMPILED else 7)
+        pairs = Pairs(points, 5 if COMPILED else 11)
         assert not pairs.disagreements()
         refused = list(pairs.expected.values()).count("crossing")
         assert 0 < refused < len(pairs.expected) / 2

@@ -52,9 +52,9 @@ def shoelace(rings: Rings) -> Fraction:
 
 def check(mesh: Triangulation, rule: Carve) -> None:
     """Verified: the constrained Delaunay triangulation of the domain; and the boundary has its area, exactly."""
-    graph = mesh.arrangement.pslg if mesh.arrangement else mesh.pslg
-    assert graph is not None
-    report = verify(mesh.points, mesh.triangles, domain=PSLG(graph.points, graph.segments, rule=rule))
+    assert mesh.domain is not None
+    assert mesh.domain.rule is rule
+    report = verify(mesh.points, mesh.triangles, domain=mesh.domain)
     assert report.ok, report.violations
     triangles = [t.tolist() for t in mesh.triangles]
     assert twice_area(mesh.points, [loop.tolist() for loop in mesh.boundary()]) == twice_area(mesh.points, triangles)
