@@ -18,7 +18,7 @@ from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.crossing_points import CrossingRounder
 from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
 from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
-from exactmesh.noding import Drawing as Drawn
+from exactmesh.noding import Drawing as Noded
 from exactmesh.noding import drawing_of
 from exactmesh.snapping import grid_of, snapped
 
@@ -245,7 +245,7 @@ class TestSnapping:
     leads through exactly the hot pixels that its segment meets; the result is planar."""
 
     @staticmethod
-    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Drawn:
+    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Noded:
         representative = first_of_each(points, lexicographic_order(points))
         ends = representative[np.array(segments, dtype=np.int32).reshape(-1, 2)]
         drawing = drawing_of(points, ends, representative)
@@ -257,20 +257,20 @@ class TestSnapping:
         points, segments = np.array(drawing[0]), drawing[1]
         if not segments:
             return
-        drawing, grid = self.snapped(points, segments), grid_of(points)
-        chains = drawing.chains(np.arange(len(segments)))
+        whole, grid = self.snapped(points, segments), grid_of(points)
+        chains = whole.chains(np.arange(len(segments)))
         exact = rationals(points.tolist())
         ends = [(exact[a], exact[b]) for a, b in segments]
         crossings = [p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None]
         hot = {oracle.pixel(p, grid) for p in [*exact, *crossings]}
-        cells = [oracle.pixel(p, grid) for p in rationals(drawing.points.tolist())]
+        cells = [oracle.pixel(p, grid) for p in rationals(whole.points.tolist())]
         assert set(cells) == hot
         for i, s in enumerate(ends):
             chain = chains.vertices[chains.start[i] : chains.start[i + 1]].tolist()
             met = {cell for cell in hot if oracle.segment_meets_pixel(s, cell, grid)}
             assert {cells[v] for v in chain} == met
             assert len(chain) == len(met)
-        assert oracle.is_planar(drawing.points.tolist(), pieces_of(chains).ends.tolist())
+        assert oracle.is_planar(whole.points.tolist(), pieces_of(chains).ends.tolist())
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
