@@ -1,5 +1,7 @@
 """ARR: which segments meet, and the planar graph that they become, against brute force in fractions."""
 
+import math
+from collections import Counter
 from fractions import Fraction
 from itertools import combinations, pairwise
 
@@ -12,13 +14,13 @@ from proofs_tests.crossing_strategies import Drawing, bundle, drawings, near_bun
 from proofs_tests.oracles import RationalPoint, rationals
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, memory
+from exactmesh import PSLG, memory, nearby, planar
 from exactmesh.chains import pieces_of
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.crossing_points import CrossingRounder
 from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
 from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
-from exactmesh.noding import Drawing as Drawn
+from exactmesh.noding import Drawing as Noded
 from exactmesh.noding import drawing_of
 from exactmesh.snapping import grid_of, snapped
 
@@ -150,7 +152,7 @@ def faults(a: Arrangement) -> list[str]:
             wrong.append(f"chain {i} is too far")
     rows = a.pslg.representative[a.pslg.segments].tolist()
     told = [(frozenset(rows[piece]), segment) for piece, segment in a.incidence.tolist()]
-    if sorted(told, key=str) != sorted(covered, key=str) or {edge for edge, _ in covered} != edges:
+    if Counter(told) != Counter(covered) or {edge for edge, _ in covered} != edges:
         wrong.append("incidence")
     return wrong
 
@@ -245,7 +247,7 @@ class TestSnapping:
     leads through exactly the hot pixels that its segment meets; the result is planar."""
 
     @staticmethod
-    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Drawn:
+    def snapped(points: FloatArray, segments: list[tuple[int, int]]) -> Noded:
         representative = first_of_each(points, lexicographic_order(points))
         ends = representative[np.array(segments, dtype=np.int32).reshape(-1, 2)]
         drawing = drawing_of(points, ends, representative)
@@ -257,20 +259,20 @@ class TestSnapping:
         points, segments = np.array(drawing[0]), drawing[1]
         if not segments:
             return
-        drawing, grid = self.snapped(points, segments), grid_of(points)
-        chains = drawing.chains(np.arange(len(segments)))
+        whole, grid = self.snapped(points, segments), grid_of(points)
+        chains = whole.chains(np.arange(len(segments)))
         exact = rationals(points.tolist())
         ends = [(exact[a], exact[b]) for a, b in segments]
         crossings = [p for s, t in combinations(ends, 2) if (p := oracle.proper_crossing(s, t)) is not None]
         hot = {oracle.pixel(p, grid) for p in [*exact, *crossings]}
-        cells = [oracle.pixel(p, grid) for p in rationals(drawing.points.tolist())]
+        cells = [oracle.pixel(p, grid) for p in rationals(whole.points.tolist())]
         assert set(cells) == hot
         for i, s in enumerate(ends):
             chain = chains.vertices[chains.start[i] : chains.start[i + 1]].tolist()
             met = {cell for cell in hot if oracle.segment_meets_pixel(s, cell, grid)}
             assert {cells[v] for v in chain} == met
             assert len(chain) == len(met)
-        assert oracle.is_planar(drawing.points.tolist(), pieces_of(chains).ends.tolist())
+        assert oracle.is_planar(whole.points.tolist(), pieces_of(chains).ends.tolist())
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
@@ -281,6 +283,110 @@ class TestSnapping:
         assert oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
         touching = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))  # its upper right corner
         assert not oracle.segment_meets_pixel(touching, (0, 0), (1.0, 1.0))
+
+
+def snapped_at_once(pslg: PSLG) -> Arrangement:
+    """The arrangement without any noding: what meets wrongly is snapped, and whatever that leads to."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planar, "_ROUNDS", 0)
+        return arrange(pslg)
+
+
+def is_moved(arranged: Arrangement) -> list[bool]:
+    """Which points of the input moved: bit for bit, but for the sign of zero."""
+    given = arranged.source.points
+    return [bool((p != q).any()) for p, q in zip(arranged.pslg.points[: len(given)], given, strict=True)]
+
+
+@pytest.mark.obligation("ARR6", "snapping is local: planar and within its distance, and nothing far from it moves")
+class TestLocality:
+    """However few segments are snapped, all are planar together and within their distance; and a point stays that is no
+    end of a segment which comes near one that is snapped."""
+
+    @given(drawings())
+    def test_snapped_beside_not_snapped(self, drawing: Drawing) -> None:
+        arranged = snapped_at_once(PSLG(*drawing))
+        assert faults(arranged) == []
+        assert arrange(arranged.pslg).pslg == arranged.pslg
+
+    @pytest.mark.parametrize("seed", range(12))
+    def test_on_finer_doubles_than_the_grid(self, seed: int) -> None:
+        """A point far away makes the grid coarser than the doubles: pixels hold many points, and many hold none."""
+        rng = np.random.default_rng(seed)
+        begins = 1.0 + rng.integers(0, 400, (20, 2)) * 2.0**-50
+        points = np.concatenate([begins, begins + rng.integers(1, 60, (20, 2)) * 2.0**-50, [[2.0 ** (seed % 6), 1.5]]])
+        arranged = snapped_at_once(PSLG(points, [(i, i + 20) for i in range(20)]))
+        assert faults(arranged) == []
+
+    def test_far_from_the_bundle(self) -> None:
+        """Bundle 26 of the corpus needs snapping; beside it a bundle that noding makes planar, and points alone."""
+        (snapped_points, snapped_pairs), (other, pairs) = bundle(26), bundle(0)
+        n = len(snapped_points)
+        points = np.concatenate([snapped_points, other + [3.0, 0.0], [(0.1, 7.3), (3.3, 0.3)]])
+        arranged = arrange(PSLG(points, [*snapped_pairs, *((a + n, b + n) for a, b in pairs)]))
+        assert faults(arranged) == []
+        assert arranged.rounding is Rounding.SNAPPED
+        assert any(is_moved(arranged)[:n])
+        assert not any(is_moved(arranged)[n:])
+
+    def test_control_all_snapped_moves_far_points(self) -> None:
+        (points, pairs), far = bundle(26), [(0.1, 7.3), (3.3, 0.3)]
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(planar, "_SNAPS", 0)
+            arranged = arrange(PSLG(np.concatenate([points, far]), pairs))
+        assert faults(arranged) == []
+        assert any(is_moved(arranged)[len(points) :])
+
+
+@pytest.mark.obligation("ARR7", "the neighbourhood that is searched again holds every box that meets a changed one")
+class TestNeighbourhood:
+    """nearby returns at least those segments whose boxes, widened by the margin, meet one that is given."""
+
+    @staticmethod
+    def missing(begins: FloatArray, ends: FloatArray, margin: float, rows: list[int], near: list[int]) -> list[int]:
+        low = [
+            [Fraction(min(p, q)) - Fraction(margin) for p, q in zip(a, b, strict=True)]
+            for a, b in zip(begins.tolist(), ends.tolist(), strict=True)
+        ]
+        high = [
+            [Fraction(max(p, q)) + Fraction(margin) for p, q in zip(a, b, strict=True)]
+            for a, b in zip(begins.tolist(), ends.tolist(), strict=True)
+        ]
+        meet = {
+            i
+            for i in range(len(low))
+            for j in rows
+            if all(low[i][k] <= high[j][k] and low[j][k] <= high[i][k] for k in (0, 1))
+        }
+        return sorted(meet - set(near))
+
+    @pytest.mark.parametrize("size", [0.0, 1e-3, 0.2])
+    @pytest.mark.parametrize("scale", [2.0**-1070, 1.0, 1e308])
+    def test_all_that_meet(self, size: float, scale: float, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(nearby, "_FEW", 0)
+        rng = np.random.default_rng(3)
+        begins = rng.random((120, 2)).round(2)
+        ends = (begins + size * rng.normal(size=(120, 2))).clip(-1.0, 1.0) * scale
+        begins *= scale
+        margin = math.ulp(float(np.abs([begins, ends]).max()))
+        boxes = nearby.boxes_of(begins, ends, (margin, margin))
+        for rows in ([5], [1, 2, 100], list(range(0, 120, 7))):
+            near = nearby.nearby(boxes, np.array(rows)).tolist()
+            assert self.missing(begins, ends, margin, rows, near) == []
+            assert near == sorted(set(near))
+
+    def test_control_one_left_out(self) -> None:
+        begins, ends = np.array([(0.0, 0.0), (1.0, 1.0), (3.0, 3.0)]), np.array([(1.0, 1.0), (2.0, 2.0), (4.0, 4.0)])
+        assert self.missing(begins, ends, 0.0, [0], [0]) == [1]
+        assert self.missing(begins, ends, 1.0, [0], [0]) == [1, 2]
+        assert self.missing(begins, ends, 0.5, [0], [0, 1]) == []
+
+    def test_few_of_many_are_near(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """What makes it local: it is not always all."""
+        monkeypatch.setattr(nearby, "_FEW", 0)
+        begins = np.random.default_rng(4).random((1000, 2))
+        boxes = nearby.boxes_of(begins, begins + 1e-3, (2.0**-53, 2.0**-53))
+        assert len(nearby.nearby(boxes, np.array([3, 77, 500]))) < 50
 
 
 @pytest.mark.obligation("ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost")

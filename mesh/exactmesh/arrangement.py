@@ -27,7 +27,8 @@ class Rounding(StrEnum):
     """Crossings became the nearest doubles, and the pieces still meet in common ends only (perhaps after they were
     noded once more). The points of the input stayed where they are."""
     SNAPPED = "snapped"
-    """Snap rounding: all vertices, the points of the input too, went to the nearest points of a grid."""
+    """Where that was not enough, segments were snapped: their vertices, points of the input too, and those nearby went
+    to the nearest points of a grid. All others stayed where they were."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +74,11 @@ class Arrangement:
         return largest_distances_squared(
             self.pslg.points, begins, ends, Chains(self.chain_start, self.chain_vertices)
         )  # fmt: skip
+
+    @property
+    def max_distance_squared(self) -> mpq:
+        """The largest of them; 0 of none."""
+        return max(self.distance_squared, default=mpq(0))
 
     @cached_property
     def domain(self) -> PSLG:
@@ -162,9 +168,9 @@ def arrange(pslg: PSLG) -> Arrangement:
 
     Crossings become vertices, segments through one point one vertex; a vertex inside a segment splits it; what overlaps
     becomes one. First the mild way: each crossing, an exact rational, goes to the nearest doubles, and an exact search
-    finds whether the pieces meet in common ends only. If they do not, and noding them again does not help within the
-    promised distance, everything is snapped to a grid, which always yields a planar graph. A PSLG that is noded already
-    comes back as it is.
+    finds whether the pieces meet in common ends only. Where they do not, and noding them again does not help within the
+    promised distance, segments are snapped to a grid, as few as it takes. A PSLG that is noded already comes back as it
+    is.
 
     Raises:
         PSLGError: a seed came to lie on a segment, or outside, when that moved.

@@ -47,7 +47,9 @@ def distinct(keys: LongArray) -> LongArray:
     return keys[np.append(True, keys[1:] != keys[:-1])] if keys.size else keys
 
 
-def _sorted_chains(points: FloatArray, begins: FloatArray, ends: FloatArray, segment: LongArray, vertex: IntArray) -> Chains:
+def _sorted_chains(
+    points: FloatArray, begins: FloatArray, ends: FloatArray, segment: LongArray, vertex: IntArray
+) -> Chains:
     """Return the chain of every segment, its vertices in order, each once.
 
     Args:
@@ -115,10 +117,10 @@ def pieces_of(chains: Chains) -> Pieces:
     inner = segment[1:] == segment[:-1]
     u, v, segment = chains.vertices[:-1][inner], chains.vertices[1:][inner], segment[1:][inner]
     keys = np.minimum(u, v).astype(np.int64) << 32 | np.maximum(u, v)
-    order = np.argsort(keys, kind="stable")
+    order = np.argsort(keys)
     ranked = keys[order]
     begins = np.append(True, ranked[1:] != ranked[:-1])[: len(ranked)]
-    first = order[begins]  # the sort is stable: the first appearance of each piece
+    first = np.minimum.reduceat(order, np.flatnonzero(begins)) if len(order) else order  # appearance of each piece
     number = np.empty(len(first), dtype=np.int64)
     by_appearance = np.argsort(first)
     number[by_appearance] = np.arange(len(first))

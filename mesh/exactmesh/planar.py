@@ -1,9 +1,9 @@
 """From segments to a planar graph of doubles: nodes where they meet, rounded as mildly as it goes.
 
-Each round looks for pieces that meet elsewhere than in common ends. For some rounds those are noded (noding.py); if that
-does not come to an end, as with nearly parallel segments that push each other on by one ulp a round, or moves something
-too far, the segments in question are snapped to a grid (snapping.py), and those that then are in their way, until
-nothing is wrong. Only the neighbourhood of what changed is looked at.
+Each round looks for pieces that meet elsewhere than in common ends. For some rounds those are noded (noding.py). If
+that does not come to an end, as with nearly parallel segments that push each other on by one ulp a round, or moves
+something too far, the segments in question are snapped to a grid (snapping.py), and those that then are in their way,
+until none is. Only the neighbourhood of what changed is looked at.
 """
 
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from gmpy2 import mpq
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.chain_distance import largest_distances_squared
-from exactmesh.chains import Chains, Pieces, pieces_of
+from exactmesh.chains import Chains, Pieces
 from exactmesh.nearby import boxes_of, nearby
 from exactmesh.noding import Drawing, Incidences, LongArray, drawing_of, is_any, met_in, noded, pieces_in
 from exactmesh.snapping import bent, grid_of, snapped
@@ -48,16 +48,33 @@ class Graph(NamedTuple):
     is_snapped: bool
 
 
-def _graph(drawing: Drawing, count: int, crossings: int, is_snapped: bool) -> Graph:
+class Part(NamedTuple):
+    """Some segments of a drawing: which, their chains, and the pieces of those."""
+
+    rows: LongArray
+    chains: Chains
+    pieces: Pieces
+
+
+def _part(drawing: Drawing, rows: LongArray) -> Part:
+    chains = drawing.chains(rows)
+    return Part(rows, chains, pieces_in(chains, rows))
+
+
+def _graph(drawing: Drawing, part: Part, count: int, crossings: int, is_snapped: bool) -> Graph:
     """Return the graph of the first ``count`` segments, the others being points; without vertices that nothing uses."""
-    chains = drawing.chains(np.arange(count))
+    if len(part.rows) < len(drawing.segments):
+        part = _part(drawing, np.arange(len(drawing.segments)))
+    start, vertices = part.chains.start[: count + 1], part.chains.vertices[: part.chains.start[count]]
     is_used = np.zeros(len(drawing.points), dtype=np.bool_)
     is_used[: len(drawing.given)] = True
-    is_used[chains.vertices] = True
+    is_used[vertices] = True
     number = (np.cumsum(is_used) - 1).astype(np.int32)
-    chains = Chains(chains.start, number[chains.vertices])
+    ends = part.pieces.ends[part.pieces.ends[:, 0] != part.pieces.ends[:, 1]]  # single vertices come last
+    incidence = part.pieces.incidence[: np.searchsorted(part.pieces.incidence[:, 0], len(ends))]
+    pieces = Pieces(number[ends], incidence)
     return Graph(
-        drawing.points[is_used], drawing.representative, chains, pieces_of(chains), crossings, is_snapped
+        drawing.points[is_used], drawing.representative, Chains(start, number[vertices]), pieces, crossings, is_snapped
     )  # fmt: skip
 
 
@@ -91,15 +108,13 @@ def _snapped_graph(
         is_snapped[wrong] = True
         is_snapped |= snaps == _SNAPS
         drawing, crossings, changed = snapped(base, is_snapped, nearby(boxes, np.flatnonzero(is_snapped)), grid)
-        rows = nearby(boxes, changed)
-        chains = drawing.chains(rows)
-        pieces = pieces_in(chains, rows)
-        found = met_in(drawing.points, pieces)
-        wrong = np.concatenate([_culprits(pieces, found, is_snapped), bent(drawing, chains, rows)])
+        part = _part(drawing, nearby(boxes, changed))
+        found = met_in(drawing.points, part.pieces)
+        wrong = np.concatenate([_culprits(part.pieces, found, is_snapped), bent(drawing, part.chains, part.rows)])
         if not len(wrong):
             wrong = _too_far(drawing, np.flatnonzero(late & ~is_snapped), grid)
         if not len(wrong):
-            return _graph(drawing, count, crossings, is_snapped=True)
+            return _graph(drawing, part, count, crossings, is_snapped=True)
         assert not is_snapped.all()  # what is snapped as a whole is planar
         snaps += 1
 
@@ -117,18 +132,17 @@ def planar_graph(points: FloatArray, segments: IntArray, representative: IntArra
     changed = np.arange(len(drawing.segments))
     late = np.zeros(len(changed), dtype=np.bool_)
     for rounds in range(_ROUNDS + 1):
-        rows = nearby(boxes, changed)
-        pieces = pieces_in(drawing.chains(rows), rows)
-        found = met_in(drawing.points, pieces)
+        part = _part(drawing, nearby(boxes, changed))
+        found = met_in(drawing.points, part.pieces)
         if not is_any(found):
             wrong = _too_far(drawing, np.flatnonzero(late), grid)
             if not len(wrong):
-                return _graph(drawing, len(segments), len(drawing.crossings), is_snapped=False)
+                return _graph(drawing, part, len(segments), len(drawing.crossings), is_snapped=False)
             break
         if rounds == _ROUNDS:
-            wrong = _culprits(pieces, found, np.zeros_like(late))
+            wrong = _culprits(part.pieces, found, np.zeros_like(late))
             break
         changed = np.unique(np.concatenate([found.segment, found.segment_of_place]))
         late[changed] |= rounds > 0
-        drawing = noded(drawing, pieces, found)
+        drawing = noded(drawing, part.pieces, found)
     return _snapped_graph(drawing, wrong, late, boxes, grid, len(segments))

@@ -310,7 +310,7 @@ def _with_common_end(k: Context, xy: FloatArray, segments: IntArray) -> Iterator
     """Yield the overlaps of segments that have an end in common."""
     proper = np.flatnonzero(segments[:, 0] != segments[:, 1])
     ends = segments[proper].T.reshape(-1)
-    order = np.argsort(ends, kind="stable")
+    order = np.argsort(ends)
     around = np.tile(proper, 2)[order].astype(np.int32)
     first = np.searchsorted(ends[order], np.arange(len(xy) + 1)).astype(np.int32)
     scratch, repeated = np.empty_like(around), np.empty(len(xy), dtype=np.int32)

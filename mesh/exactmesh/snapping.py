@@ -88,6 +88,9 @@ def snapped(
     near = np.flatnonzero(np.isin(drawing.segment, rows))
     is_hot = is_snapped[drawing.segment[near]]
     is_hot |= _rows_in(cells_of(drawing.points[drawing.vertex[near]], grid), hot) >= 0
+    gone = drawing.vertex[near[is_hot]]
+    gone = gone[(gone >= len(drawing.given)) & ~np.isin(gone, drawing.crossings)]
+    is_hot |= np.isin(drawing.vertex[near], gone)
     dropped = near[is_hot]
     kept = np.delete(np.arange(len(drawing.segment)), dropped)
     changed = np.unique(np.concatenate([np.flatnonzero(is_snapped), segment, drawing.segment[dropped]]))
@@ -117,4 +120,5 @@ def bent(drawing: Drawing, chains: Chains, rows: LongArray) -> LongArray:
     forward = (where[1:] > where[:-1]).astype(np.int8) - (where[1:] < where[:-1])
     turns = inner & (forward * direction[owner[1:]] < 0).any(axis=1)
     wrong[owner[1:][turns]] = True
-    return rows[wrong]
+    found: LongArray = rows[wrong]
+    return found

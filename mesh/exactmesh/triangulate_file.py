@@ -104,7 +104,7 @@ def _facts(pslg: PSLG, mesh: Triangulation) -> Iterator[str]:
     if outside:
         yield f"{outside} points outside of the domain left out"
     if mesh.arrangement is not None:
-        farthest = max(mesh.arrangement.distance_squared)
+        farthest = mesh.arrangement.max_distance_squared
         moved = _root(Fraction(int(farthest.numerator), int(farthest.denominator)))
         yield f"{mesh.arrangement.crossings} crossings split, segments moved by at most {moved:.3g}"
 
