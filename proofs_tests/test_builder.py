@@ -31,12 +31,10 @@ from exactmesh import (
     constrained_delaunay,
     delaunay,
 )
-from exactmesh import (
-    builder as module,
-)
-from exactmesh.draft import EDGES, Draft
 from exactmesh.edgealgebra import dest, left_next, origin, swap
-from exactmesh.walk import INSIDE, ON_EDGE, ON_VERTEX, walk
+from exactmesh.editing import builder as module
+from exactmesh.editing.draft import EDGES, Draft
+from exactmesh.editing.walk import INSIDE, ON_EDGE, ON_VERTEX, walk
 
 STEPS = settings(settings(), max_examples=settings().max_examples // (5 if COMPILED else 15), stateful_step_count=25)
 

@@ -14,15 +14,15 @@ from proofs_tests.crossing_strategies import Drawing, bundle, drawings, near_bun
 from proofs_tests.oracles import RationalPoint, rationals
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, memory, nearby, planar
-from exactmesh.chains import pieces_of
+from exactmesh import PSLG
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.crossing_points import CrossingRounder
-from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings
+from exactmesh.crossings import Arrangement, Rounding, arrange, find_crossings, memory, nearby, planar
+from exactmesh.crossings.chains import pieces_of
+from exactmesh.crossings.crossing_points import CrossingRounder
+from exactmesh.crossings.noding import Drawing as Noded
+from exactmesh.crossings.noding import drawing_of
+from exactmesh.crossings.snapping import grid_of, snapped
 from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
-from exactmesh.noding import Drawing as Noded
-from exactmesh.noding import drawing_of
-from exactmesh.snapping import grid_of, snapped
 
 #: Corpus number 7: three segments through nearly one point.
 SEVEN = np.array(

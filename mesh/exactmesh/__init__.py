@@ -7,10 +7,10 @@
 """
 
 from exactkernel.types import Sign, Stage
-from exactmesh.builder import TriangulationBuilder
 from exactmesh.constrain import Crossings, constrained_delaunay
 from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, arrange, find_crossings
 from exactmesh.delaunay import delaunay
+from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
     ChoiceError,
     CollinearPointsError,

@@ -12,9 +12,9 @@ from exactkernel.arrays import finite_points
 from exactkernel.batch import orient2d_batch
 from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW, Context
 from exactkernel.types import FloatArray, IntArray, Stage
-from exactmesh.arrangement import Arrangement
 from exactmesh.columns import MarkerArray
 from exactmesh.connectivity import check_corners, check_neighbors, edges_of, loops_of, planar_rings_of
+from exactmesh.crossings import Arrangement
 from exactmesh.errors import ShapeError, TopologyError
 from exactmesh.locate import locate_points, on_boundary
 from exactmesh.markers import boundary_edges, markers_of_edges

@@ -5,8 +5,8 @@ from typing import NamedTuple
 from exactkernel.jit import jit
 from exactkernel.types import IntArray
 from exactmesh.constrain import constrain_range, find_edge
-from exactmesh.draft import GROUPS, SEGMENTS, Draft
 from exactmesh.edgealgebra import EdgeArray, dest, left_next
+from exactmesh.editing.draft import GROUPS, SEGMENTS, Draft
 from exactmesh.ordering import IndexArray
 from exactmesh.plane import orient, toward
 

@@ -10,8 +10,8 @@ Reference [Chew 1990].
 
 from exactkernel.jit import jit, jit_inline
 from exactmesh.cavity import legalize_fan
-from exactmesh.draft import EDGES, START, VERTICES, Draft
 from exactmesh.edgealgebra import dest, left_next, link_ring, origin, rot, swap
+from exactmesh.editing.draft import EDGES, START, VERTICES, Draft
 from exactmesh.plane import Plane, orient
 
 __all__ = ["constraints_at", "forget", "is_only_apex", "remove_vertex"]

@@ -17,7 +17,7 @@ from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.segment_tree import LEAF, Pool, box_pieces, grown, pool_of, split_top
+from exactmesh.crossings.segment_tree import LEAF, Pool, box_pieces, grown, pool_of, split_top
 
 __all__ = ["Meeting", "MeetingArrays", "meetings"]
 

@@ -17,11 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.types import FloatArray
-from exactmesh.chains import Chains
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.crossing_points import cells_of
-from exactmesh.hot_pixels import met_pixels
-from exactmesh.noding import Drawing, LongArray, distinct_places, met_in, pieces_in
+from exactmesh.crossings.chains import Chains
+from exactmesh.crossings.crossing_points import cells_of
+from exactmesh.crossings.hot_pixels import met_pixels
+from exactmesh.crossings.noding import Drawing, LongArray, distinct_places, met_in, pieces_in
 
 __all__ = ["bent", "grid_of", "snapped"]
 

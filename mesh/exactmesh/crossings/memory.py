@@ -3,8 +3,8 @@
 import os
 from collections.abc import Iterator
 
+from exactmesh.crossings.segment_meetings import MeetingArrays
 from exactmesh.errors import TooManyCrossingsError
-from exactmesh.segment_meetings import MeetingArrays
 
 __all__ = ["limited"]
 

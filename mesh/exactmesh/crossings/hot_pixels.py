@@ -16,7 +16,7 @@ from exactkernel.expansions import two_diff, two_sum
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.crossing_points import cells_of
+from exactmesh.crossings.crossing_points import cells_of
 
 __all__ = ["met_pixels"]
 

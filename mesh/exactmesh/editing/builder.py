@@ -19,8 +19,8 @@ from exactmesh.assembly import Task, assembled, cut_out, in_order
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.constrain import constrained_delaunay
 from exactmesh.delaunay import Insertion
-from exactmesh.deletion import constraints_at, forget, is_only_apex, remove_vertex
-from exactmesh.draft import (
+from exactmesh.editing.deletion import constraints_at, forget, is_only_apex, remove_vertex
+from exactmesh.editing.draft import (
     EDGES,
     FLIPS,
     NUMBERS,
@@ -34,6 +34,8 @@ from exactmesh.draft import (
     with_room,
     with_room_for_segments,
 )  # fmt: skip
+from exactmesh.editing.insertion import insert_vertices
+from exactmesh.editing.segmentation import add_segment, groups_of, look_along, members
 from exactmesh.errors import (
     CollinearPointsError,
     ConstrainedVertexError,
@@ -42,10 +44,8 @@ from exactmesh.errors import (
     TopologyError,
 )  # fmt: skip
 from exactmesh.ids import Vertex
-from exactmesh.insertion import insert_vertices
 from exactmesh.ordering import insertion_order
 from exactmesh.pslg import PSLG
-from exactmesh.segmentation import add_segment, groups_of, look_along, members
 from exactmesh.triangulation import Triangulation
 
 __all__ = ["TriangulationBuilder"]

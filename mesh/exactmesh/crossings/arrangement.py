@@ -8,12 +8,12 @@ import numpy as np
 from gmpy2 import mpq
 
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.chain_distance import is_anything_moved, largest_distances_squared
-from exactmesh.chains import Chains, LongArray
 from exactmesh.columns import MarkerArray, frozen
-from exactmesh.planar import Graph, planar_graph
+from exactmesh.crossings.chain_distance import is_anything_moved, largest_distances_squared
+from exactmesh.crossings.chains import Chains, LongArray
+from exactmesh.crossings.planar import Graph, planar_graph
+from exactmesh.crossings.snapping import grid_of
 from exactmesh.pslg import PSLG, Carve
-from exactmesh.snapping import grid_of
 
 __all__ = ["Arrangement", "Rounding", "arrange"]
 

@@ -15,7 +15,7 @@ from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import RationalPoint, raise_if_interrupted
 from exactkernel.types import FloatArray
-from exactmesh.chains import Chains, LongArray
+from exactmesh.crossings.chains import Chains, LongArray
 
 __all__ = ["is_anything_moved", "largest_distances_squared"]
 

@@ -13,11 +13,11 @@ import numpy.typing as npt
 from gmpy2 import mpq
 
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.chain_distance import largest_distances_squared
-from exactmesh.chains import Chains, Pieces
-from exactmesh.nearby import boxes_of, nearby
-from exactmesh.noding import Drawing, Incidences, LongArray, drawing_of, is_any, met_in, noded, pieces_in
-from exactmesh.snapping import bent, grid_of, snapped
+from exactmesh.crossings.chain_distance import largest_distances_squared
+from exactmesh.crossings.chains import Chains, Pieces
+from exactmesh.crossings.nearby import boxes_of, nearby
+from exactmesh.crossings.noding import Drawing, Incidences, LongArray, drawing_of, is_any, met_in, noded, pieces_in
+from exactmesh.crossings.snapping import bent, grid_of, snapped
 
 __all__ = ["Graph", "planar_graph"]
 

@@ -1,8 +1,4 @@
-"""Segments that meet where they should not: find all of them, or make a planar graph of them.
-
-:func:`find_crossings` lists the pairs; :func:`exactmesh.arrangement.arrange` turns a PSLG into one whose segments meet
-in common ends only.
-"""
+"""Pairs of segments that meet where they should not."""
 
 from dataclasses import dataclass
 
@@ -13,15 +9,14 @@ from exactkernel.arrays import finite_points
 from exactkernel.batch import orient2d_batch
 from exactkernel.errors import DegenerateError
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.arrangement import Arrangement, Rounding, arrange
-from exactmesh.chains import distinct
 from exactmesh.coincident import first_of_each, lexicographic_order
 from exactmesh.columns import MarkerArray, frozen, indices_of
-from exactmesh.crossing_points import CrossingRounder
-from exactmesh.memory import limited
-from exactmesh.segment_meetings import Meeting, meetings
+from exactmesh.crossings.chains import distinct
+from exactmesh.crossings.crossing_points import CrossingRounder
+from exactmesh.crossings.memory import limited
+from exactmesh.crossings.segment_meetings import Meeting, meetings
 
-__all__ = ["Arrangement", "Meeting", "Rounding", "SegmentPairs", "arrange", "crossing_pairs", "find_crossings"]
+__all__ = ["SegmentPairs", "crossing_pairs", "find_crossings"]
 
 _BYTES_PER_PAIR = 40  # of the portions, the keys and their sort
 

@@ -2,11 +2,11 @@
 
 from exactkernel.jit import jit, jit_inline
 from exactmesh.delaunay import in_conflict
-from exactmesh.draft import EDGES, FLIPS, NUMBERS, START, VERTICES, Draft
 from exactmesh.edgealgebra import dest, left_next, origin, split_face, swap
+from exactmesh.editing.draft import EDGES, FLIPS, NUMBERS, START, VERTICES, Draft
+from exactmesh.editing.walk import ON_EDGE, ON_VERTEX, walk
 from exactmesh.ordering import IndexArray
 from exactmesh.plane import Plane
-from exactmesh.walk import ON_EDGE, ON_VERTEX, walk
 
 __all__ = ["insert_vertices"]
 

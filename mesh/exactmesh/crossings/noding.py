@@ -14,11 +14,11 @@ from exactkernel.context import Context, scaled_into_window
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.chains import Chains, Pieces, chains_through, distinct, pieces_of
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.crossing_points import CrossingRounder
-from exactmesh.memory import limited
-from exactmesh.segment_meetings import Meeting, is_inside, meetings
+from exactmesh.crossings.chains import Chains, Pieces, chains_through, distinct, pieces_of
+from exactmesh.crossings.crossing_points import CrossingRounder
+from exactmesh.crossings.memory import limited
+from exactmesh.crossings.segment_meetings import Meeting, is_inside, meetings
 
 __all__ = ["Drawing", "Incidences", "distinct_places", "drawing_of", "is_any", "met_in", "noded", "pieces_in"]
 
