@@ -162,7 +162,7 @@ def faults(a: Arrangement) -> list[str]:
 )
 class TestArrangement:
     """Whatever the segments: the result is planar by brute force; every chain leads along its segment, within half the
-    diagonal of the grid's cells, at exactly the stated distance; the points of the input stay unless all are snapped;
+    diagonal of the grid's cells, at exactly the stated distance; the points of the input stay unless some are snapped;
     and arranging the result changes nothing, bit for bit."""
 
     @given(drawings())

@@ -187,9 +187,11 @@ def _test_leaf(
 
 
 @jit
-def _advance(k: Context, xy: FloatArray, segments: IntArray, pool: Pool, out: MeetingArrays, budget: int) -> int:
-    """Subdivide and test until the budget is used up or room is missing; return the number of meetings in ``out``."""
-    n = 0
+def _advance(
+    k: Context, xy: FloatArray, segments: IntArray, pool: Pool, out: MeetingArrays, n: int, budget: int
+) -> int:
+    """Subdivide and test until the budget is used up or room is missing; return the number of meetings in ``out``, of
+    which ``n`` are there already."""
     while pool.state[0] > 0 and budget > 0:
         cell = pool.state[0] - 1
         size = pool.start[cell + 1] - pool.start[cell]
@@ -355,7 +357,7 @@ def meetings(points: FloatArray, segments: IntArray) -> Iterator[MeetingArrays]:
         top = int(pool.start[pool.state[0]])
         if top + top - int(pool.start[pool.state[0] - 1]) > len(pool.segment):
             pool = grown(pool)
-        n = _advance(k, xy, segments, pool, out, budget)
+        n = _advance(k, xy, segments, pool, out, 0, budget)
         raise_if_interrupted()
         if n:
             first, second = order[out.first[:n]], order[out.second[:n]]
