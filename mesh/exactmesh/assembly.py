@@ -13,6 +13,7 @@ from exactmesh.delaunay import Insertion, number_vertices
 from exactmesh.edgealgebra import EdgeArray
 from exactmesh.errors import Fault, FaultKind, PSLGError
 from exactmesh.extract import triangles_of
+from exactmesh.holes import seeds_of_holes
 from exactmesh.locate import locate_points
 from exactmesh.markers import boundary_edges, markers_along, vertex_markers
 from exactmesh.plane import BoolArray, Plane
@@ -108,12 +109,14 @@ class Cut(NamedTuple):
         triangles, neighbors: int32 (m, 3) each, the corners as positions.
         region: int32 (m,), the region of each triangle, or -1.
         sides: int (p,): how many triangles of the domain are at each constrained edge.
+        holes: float64 (h, 2), a point in each part of the hull that the domain encloses.
     """
 
     triangles: IntArray
     neighbors: IntArray
     region: IntArray
     sides: IntArray
+    holes: FloatArray
 
 
 def cut_out(task: Task, built: Insertion, edges: Constrained) -> Cut:
@@ -146,11 +149,15 @@ def cut_out(task: Task, built: Insertion, edges: Constrained) -> Cut:
     if faults:
         raise PSLGError(faults)
     region = regions_of(graph, neighbors, fixed, place, found[len(graph.holes) :])
+    holes = graph.holes[:0]
     if not kept.all():
+        if (place == Place.HOLE).any():
+            points = graph.points[built.order]
+            holes = seeds_of_holes(points, triangles, neighbors, kept, graph.holes, found[: len(graph.holes)])
         number = np.full(len(kept) + 1, -1, dtype=np.int32)
         number[:-1][kept] = np.arange(kept.sum(), dtype=np.int32)
         triangles, neighbors, region = triangles[kept], number[neighbors[kept]], region[kept]
-    return Cut(triangles, neighbors, region, (around == Place.DOMAIN).sum(axis=1))
+    return Cut(triangles, neighbors, region, (around == Place.DOMAIN).sum(axis=1), holes)
 
 
 def _mark(flags: BoolArray, sides: IntArray) -> None:
@@ -185,6 +192,7 @@ def assembled(task: Task, built: Insertion, edges: Constrained, cut: Cut) -> Tri
         arrangement=task.arrangement,
         domain=task.domain,
         segments=segments,
+        holes=cut.holes,
         segment_markers=markers_along(source, incidence, cut.sides[inside] == 1),
         segment_incidence=incidence[np.lexsort(incidence.T[::-1])],
         vertex_markers=vertex_markers(graph, representative, segments, boundary, source, incidence),

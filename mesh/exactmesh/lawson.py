@@ -252,5 +252,5 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike, *, segments: npt.Arr
     if segments is None:
         return Triangulation(given, found, neighbors, representative=same, work=work_of(k, built.flips))
     sides = (slot.reshape(-1, 2)[edges.edges] >= 0).sum(axis=1)
-    cut = Cut(found, neighbors, np.full(len(found), -1, dtype=np.int32), sides)
+    cut = Cut(found, neighbors, np.full(len(found), -1, dtype=np.int32), sides, np.empty((0, 2)))
     return assembled(Task(graph, graph, None, None), built, edges, cut)

@@ -150,14 +150,27 @@ def _outside(
 
 
 def open_faults(pslg: PSLG, lost: IntArray) -> list[Fault]:
-    """Return the faults of segments, ``lost``, that have the exterior on both sides: what should they bound?"""
+    """Return the faults of segments, ``lost``, that have the exterior on both sides: what should they bound?
+
+    Those with a loose end come first: there an outline is open, or something overhangs.
+    """
+    ends = pslg.representative[pslg.segments]
+    loose = np.bincount(ends.reshape(-1), minlength=len(pslg.points))[ends[lost]] == 1
+    order = np.argsort(~loose.any(axis=1), kind="stable")
     faults = [
-        Fault(FaultKind.NOT_CLOSED, (int(s),), f"segment {s} {tuple(pslg.segments[s].tolist())} bounds nothing")
-        for s in lost
+        Fault(FaultKind.NOT_CLOSED, (int(s),), _lost_segment(pslg, int(s), is_loose))
+        for s, is_loose in zip(lost[order], loose[order].tolist(), strict=True)
     ]
     if len(pslg.segments) == 0:
         faults.append(Fault(FaultKind.NOT_CLOSED, (), "without segments there is nothing to carve"))
     return faults
+
+
+def _lost_segment(pslg: PSLG, s: int, loose: list[bool]) -> str:
+    ends = pslg.segments[s].tolist()
+    places = [f"point {v} {tuple(pslg.points[v].tolist())}" for v, end in zip(ends, loose, strict=True) if end]
+    where = f", with the loose end {' and '.join(places)}," if places else ""
+    return f"segment {s} ({ends[0]}, {ends[1]}){where} has the exterior on both sides"
 
 
 def _disagreement(first: int, later: int) -> Fault:

@@ -57,6 +57,10 @@ def _no_markers() -> MarkerArray:
     return np.empty(0, dtype=np.int64)
 
 
+def _no_points() -> FloatArray:
+    return np.empty((0, 2), dtype=np.float64)
+
+
 def _no_columns() -> FloatArray:
     return np.empty((0, 0), dtype=np.float64)
 
@@ -78,6 +82,7 @@ class Triangulation:
         pslg: the graph that was triangulated, or None.
         arrangement: how its crossings became vertices, or None where there was no need.
         domain: what the triangles cover, for :func:`exactmesh.verify`; None is the convex hull.
+        holes: float64 (h, 2), a point in each hole, whatever rule made it one.
         segments: int32 (s, 2), the constrained edges; without vertices inside of them, row i is segment i of the graph.
         segment_markers: int64 (s,), see :mod:`exactmesh.markers`.
         segment_incidence: int32 (k, 2), sorted rows (constrained edge, segment of the graph): a segment with vertices
@@ -105,6 +110,7 @@ class Triangulation:
     pslg: PSLG | None = None
     arrangement: Arrangement | None = None
     domain: PSLG | None = None
+    holes: FloatArray = field(default_factory=_no_points)
     segments: IntArray = field(default_factory=_no_pairs)
     segment_markers: MarkerArray = field(default_factory=_no_markers)
     segment_incidence: IntArray = field(default_factory=_no_pairs)

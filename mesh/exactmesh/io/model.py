@@ -161,6 +161,6 @@ def mesh_of(mesh: Mesh | Triangulated) -> Mesh:
         edge_markers=mesh.edge_markers,
         segments=mesh.segments,
         segment_markers=mesh.segment_markers,
-        holes=mesh.pslg.holes,
+        holes=mesh.holes,
         regions=mesh.pslg.regions,
     )
