@@ -322,7 +322,7 @@ class TestLocality:
         """Bundle 26 of the corpus needs snapping; beside it a bundle that noding makes planar, and points alone."""
         (snapped_points, snapped_pairs), (other, pairs) = bundle(26), bundle(0)
         n = len(snapped_points)
-        points = np.concatenate([snapped_points, [*other, 3.0, 0.0], [(0.1, 7.3), (3.3, 0.3)]])
+        points = np.concatenate([snapped_points, other + np.array([3.0, 0.0]), [(0.1, 7.3), (3.3, 0.3)]])
         arranged = arrange(PSLG(points, [*snapped_pairs, *((a + n, b + n) for a, b in pairs)]))
         assert faults(arranged) == []
         assert arranged.rounding is Rounding.SNAPPED
