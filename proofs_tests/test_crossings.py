@@ -309,6 +309,15 @@ class TestLocality:
         assert faults(arranged) == []
         assert arrange(arranged.pslg).pslg == arranged.pslg
 
+    @pytest.mark.parametrize("n", [20, 40, 80])
+    def test_nearly_collinear_segments_do_not_breed(self, n: int) -> None:
+        """Segments one ulp off one line: each rounding made several times as many crossings as there were."""
+        rng, x = np.random.default_rng(0), np.linspace(0.0, 1.0, n)
+        points = np.stack([x, x / 3.0 + rng.integers(-1, 2, n) * 2.0**-54], axis=1)
+        arranged = arrange(PSLG(points, [(i, n - 1 - i) for i in range(n // 2)]))
+        assert arranged.rounding is Rounding.SNAPPED
+        assert len(find_crossings(arranged.pslg.points, arranged.pslg.segments)) == 0
+
     @pytest.mark.parametrize("seed", range(12))
     def test_on_finer_doubles_than_the_grid(self, seed: int) -> None:
         """A point far away makes the grid coarser than the doubles: pixels hold many points, and many hold none."""

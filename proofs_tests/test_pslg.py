@@ -244,6 +244,15 @@ class TestKeptAsGiven:
         rule="even-odd",
     )
 
+    def test_a_view_of_what_was_given_changes_nothing(self) -> None:
+        given = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0)])
+        view = given[:]
+        given.flags.writeable = False
+        pslg = PSLG(given, [(0, 1), (1, 2), (2, 0)])
+        view[0, 0] = 77.0
+        assert given[0, 0] == 77.0
+        assert pslg.points[0, 0] == 0.0
+
     @pytest.mark.parametrize(
         "pslg",
         [full, copy.copy(full), copy.deepcopy(full), pickle.loads(pickle.dumps(full)), dataclasses.replace(full)],

@@ -18,9 +18,10 @@ from exactkernel.types import IntArray
 from exactmesh.assembly import Task, assembled, cut_out, in_order, of_source
 from exactmesh.cavity import split_along
 from exactmesh.crossings import arrange, crossing_pairs
+from exactmesh.crossings.memory import room_for
 from exactmesh.delaunay import Insertion, Progress, insert_points
 from exactmesh.edgealgebra import EdgeArray, dest
-from exactmesh.errors import ChoiceError, CrossingError
+from exactmesh.errors import ChoiceError, CrossingError, TooManyCrossingsError
 from exactmesh.ordering import IndexArray
 from exactmesh.plane import Plane, march, toward
 from exactmesh.pslg import PSLG, Carve
@@ -29,6 +30,7 @@ from exactmesh.triangulation import Triangulation
 
 __all__ = ["Crossings", "constrained_delaunay"]
 
+_BYTES_PER_PIECE = 100  # of the arrays that sort them
 _CHUNK = 1 << 15  # segments between two looks at Ctrl-C, where predicates are fast
 
 
@@ -135,6 +137,9 @@ def insert_segments(plane: Plane, ends: IntArray, progress: Progress | None = No
     """Constrain the segments; return rows (edge, segment), int32, or None when two of them cross.
 
     They come in the order in which their later ends were inserted: at random from far, along a curve from near.
+
+    Raises:
+        TooManyCrossingsError: segments overlap so much that their pieces do not fit into a quarter of the memory.
     """
     order = np.argsort(ends.max(axis=1, initial=0), kind="stable")
     left = ends.astype(np.int64)
@@ -148,6 +153,11 @@ def insert_segments(plane: Plane, ends: IntArray, progress: Progress | None = No
         if crossed:
             return None
         if count == len(pieces):
+            if 2 * count > room_for(_BYTES_PER_PIECE):
+                raise TooManyCrossingsError(
+                    f"the segments have more than {count} pieces, for they overlap: too many for this machine's memory",
+                    indices=[int(pieces[count - 1, 1])],
+                )
             pieces = np.concatenate([pieces, np.empty_like(pieces)])
         if progress is not None:
             progress(int(turn), len(ends))
@@ -157,11 +167,17 @@ def insert_segments(plane: Plane, ends: IntArray, progress: Progress | None = No
 def triangulated(task: Task, seed: int, progress: Progress | None) -> Triangulation | None:
     """Return the constrained Delaunay triangulation, or None if segments cross."""
     graph = task.graph
-    built = insert_points(graph.points, seed=seed, progress=progress)
+    points, everything = len(graph.points), len(graph.points) + len(graph.segments)
+
+    def advance(done: int) -> None:
+        if progress is not None:
+            progress(done, everything)
+
+    built = insert_points(graph.points, seed=seed, progress=lambda done, _: advance(done))
     position = np.empty(len(built.order), dtype=np.int32)
     position[built.order] = built.twin
     plane, ends = plane_of(built), position[graph.segments]
-    pieces = insert_segments(plane, ends)
+    pieces = insert_segments(plane, ends, lambda done, _: advance(points + done))
     if pieces is None:
         return None
     edges = in_order(plane, ends, pieces)
@@ -190,7 +206,7 @@ def constrained_delaunay(
             whole convex hull, holes included.
         crossings: what to do about segments that cross; see :class:`Crossings`.
         seed: chooses the random order of insertion, and so the time it takes, never the result.
-        progress: called now and then with (points done, points in all).
+        progress: called now and then with (points and segments done, points and segments in all).
 
     Returns:
         A :class:`Triangulation` with ``segments``, their markers, ``chain(i)`` of each input segment, the regions of
@@ -200,6 +216,7 @@ def constrained_delaunay(
         CrossingError: segments cross; ``pairs`` names them all.
         PSLGError: what is to be carved is not closed, a seed lies outside of the domain, two seeds disagree, or
             nothing is left.
+        TooManyCrossingsError: segments cross or overlap so much that the result does not fit into the memory.
         TooFewPointsError, CollinearPointsError, TooManyPointsError, SeedError: as for :func:`exactmesh.delaunay`.
         ChoiceError: ``carve`` or ``crossings`` is none of the words.
         ShapeError: ``pslg`` is no :class:`PSLG`.
@@ -217,7 +234,7 @@ def constrained_delaunay(
     """
     if not isinstance(pslg, PSLG):
         raise ShapeError(f"expected a PSLG, not a {type(pslg).__name__}: make one with PSLG(points, segments)")
-    rule = (pslg.rule if carve else None) if isinstance(carve, bool) else Carve(carve)
+    rule = (pslg.rule if carve else None) if isinstance(carve, (bool, np.bool_)) else Carve(carve)
     pslg = pslg if rule in (None, pslg.rule) else pslg.with_rule(rule)
     treatment = Crossings(crossings)
     if rule is Carve.EVEN_ODD:

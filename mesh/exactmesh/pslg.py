@@ -123,6 +123,9 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
             "point_attributes": rows_for(attributes_of(point_attributes, "point_attributes"), "point_attributes", n),
             "rule": Carve(rule),
         }
+        for name, value in content.items():  # a caller may hold a view of what it gave, however read-only
+            if isinstance(value, np.ndarray):
+                content[name] = value.copy(order="C")
         order = lexicographic_order(coordinates)
         representative = first_of_each(coordinates, order)
         faults, sound = segment_faults(ends, representative)

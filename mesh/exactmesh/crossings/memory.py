@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from exactmesh.crossings.segment_meetings import MeetingArrays
 from exactmesh.errors import TooManyCrossingsError
 
-__all__ = ["limited"]
+__all__ = ["limited", "room_for"]
 
 _ASSUMED = 1 << 32  # bytes, where the system does not tell
 
@@ -19,13 +19,18 @@ def _available() -> int:
         return _ASSUMED // 4
 
 
+def room_for(bytes_each: int) -> int:
+    """Return how many things fit into a quarter of the machine's memory."""
+    return _available() // bytes_each
+
+
 def limited(portions: Iterator[MeetingArrays], bytes_each: int) -> Iterator[MeetingArrays]:
     """Yield the portions as long as all meetings together fit into a quarter of the machine's memory.
 
     Raises:
         TooManyCrossingsError: they do not.
     """
-    most = _available() // bytes_each
+    most = room_for(bytes_each)
     count = 0
     for portion in portions:
         count += len(portion.first)

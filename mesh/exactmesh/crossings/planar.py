@@ -22,6 +22,7 @@ from exactmesh.crossings.snapping import bent, grid_of, snapped
 __all__ = ["Graph", "planar_graph"]
 
 _ROUNDS = 8  # of noding
+_GROWTH = 2  # times as many meetings in the next round are too many: nearly parallel segments breed them
 _SNAPS = 16  # with more segments each time; then all are snapped
 
 
@@ -131,6 +132,7 @@ def planar_graph(points: FloatArray, segments: IntArray, representative: IntArra
     boxes = boxes_of(drawing.begins, drawing.finishes, grid)
     changed = np.arange(len(drawing.segments))
     late = np.zeros(len(changed), dtype=np.bool_)
+    most = np.inf
     for rounds in range(_ROUNDS + 1):
         part = _part(drawing, nearby(boxes, changed))
         found = met_in(drawing.points, part.pieces)
@@ -139,9 +141,10 @@ def planar_graph(points: FloatArray, segments: IntArray, representative: IntArra
             if not len(wrong):
                 return _graph(drawing, part, len(segments), len(drawing.crossings), is_snapped=False)
             break
-        if rounds == _ROUNDS:
+        if rounds == _ROUNDS or len(found.segment) + len(found.segment_of_place) > most:  # they breed
             wrong = _culprits(part.pieces, found, np.zeros_like(late))
             break
+        most = _GROWTH * (len(found.segment) + len(found.segment_of_place))
         changed = np.unique(np.concatenate([found.segment, found.segment_of_place]))
         late[changed] |= rounds > 0
         drawing = noded(drawing, part.pieces, found)
