@@ -353,6 +353,7 @@ class TestBadInput:
         with pytest.raises(CrossingError) as crossing:
             builder.insert_segment(1, 3)
         assert crossing.value.pairs.tolist() == [[0, 1]]
+        assert "crossings=" not in str(crossing.value)  # which is none of its arguments
         with pytest.raises(ConstrainedVertexError) as constrained:
             builder.delete_vertex(2)
         assert constrained.value.indices == (0,)
@@ -362,6 +363,7 @@ class TestBadInput:
         with pytest.raises(CrossingError) as crossing:
             TriangulationBuilder([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 2), (1, 3)])
         assert crossing.value.pairs.tolist() == [[0, 1]]
+        assert "0 and 1 [(0.0, 0.0) to (1.0, 1.0), (1.0, 0.0) to (0.0, 1.0)]" in str(crossing.value)
         with pytest.raises(NonFiniteError):
             TriangulationBuilder([(0, float("nan"))])
         with pytest.raises(ShapeError):

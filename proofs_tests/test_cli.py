@@ -161,8 +161,10 @@ class TestTriangulateGraphs:
 
     def test_crossings(self, capsys: pytest.CaptureFixture[str]) -> None:
         write_pslg("cross.poly", CROSS, base=1)
-        expected = "exactmesh: cross.poly: segments cross: 5 and 6; --crossings split makes their crossings vertices\n"
-        assert complaint(capsys, "triangulate", "cross.poly") == expected
+        assert complaint(capsys, "triangulate", "cross.poly") == (
+            "exactmesh: cross.poly: segments cross: 5 and 6 [(1.0, 1.0) to (9.5, 7.0), (3.0, 9.0) to (8.0, 2.0)] "
+            "(--crossings split makes their crossings vertices)\n"
+        )
         assert main(["triangulate", "cross.poly", "--crossings", "split"]) == 0
         told = capsys.readouterr().out
         facts = re.match(
@@ -210,8 +212,13 @@ class TestTriangulateGraphs:
         write_pslg("lake.poly", LAKE, base=1)
         Path("bad.poly").write_text(Path("lake.poly").read_text().replace("7 7 5 9", "7 7 7 9"))
         told = complaint(capsys, "triangulate", "bad.poly")
-        assert "segment 6 begins and ends in point 6" in told
-        assert told.endswith("[numbers here count from 0, those in the file from 1]\n")
+        assert "segment 7 begins and ends in point 7" in told
+
+    def test_remedies_are_those_of_the_command(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("open.poly", PSLG(SQUARE, [(0, 1), (1, 2), (2, 3)]), base=1)
+        told = complaint(capsys, "triangulate", "open.poly")
+        assert "--carve none" in told
+        assert "carve=" not in told
 
 
 class TestVerifyDomains:
@@ -244,11 +251,33 @@ class TestVerifyDomains:
         assert main(["verify", "other.npz", "--domain", "lake.poly"]) == 1
         assert main(["verify", "ring.1.ele", "--domain", "lake.poly"]) == 1
 
-    def test_without_a_domain_it_is_the_hull(self, capsys: pytest.CaptureFixture[str]) -> None:
-        assert main(["verify", "lake.1.ele"]) == 1
-        assert "--domain FILE says what it should cover" in capsys.readouterr().out
+    @pytest.mark.parametrize("suffix", ["ele", "npz"])
+    def test_without_a_domain_it_is_the_files_own(self, suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+        write("copy.npz", read("lake.1.ele"))
+        name, place = {"ele": ("lake.1.ele", "lake.1.poly"), "npz": ("copy.npz", "copy.npz")}[suffix]
+        assert main(["verify", name]) == 0
+        told = capsys.readouterr().out
+        assert "  + covers_domain        holds" in told
+        assert f"the domain of the segments and holes in {place}; --domain FILE" in told
+
+    def test_control_without_a_domain_less_is_noticed(self, capsys: pytest.CaptureFixture[str]) -> None:
+        mesh = read("lake.1.ele")
+        assert mesh.triangles is not None
+        write("less.npz", replace(mesh, triangles=mesh.triangles[1:], triangle_attributes=None, regions=None))
+        assert main(["verify", "less.npz"]) == 1
+        assert main(["verify", "less.npz", "--claim", "covers-domain"]) == 1
+        assert "! covers_domain" in capsys.readouterr().out
+
+    def test_a_hull_is_one(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["triangulate", "lake.poly", "--carve", "none"]) == 0
         assert main(["verify", "lake.1.ele"]) == 0
+        assert "(Checked against the hull, for it is no triangulation of the domain" in capsys.readouterr().out
+
+    def test_segments_that_are_no_domain(self, capsys: pytest.CaptureFixture[str]) -> None:
+        triangles = [(0, 1, 2), (0, 2, 3)]
+        write("odd.npz", Mesh(SQUARE[:4], triangles=triangles, segments=[(0, 2)], holes=[SQUARE[0]], base=1))
+        assert main(["verify", "odd.npz"]) == 0
+        assert "(Checked against the hull, for odd.npz: hole 1 at" in capsys.readouterr().out
 
     def test_bad_input(self, capsys: pytest.CaptureFixture[str]) -> None:
         assert "nix.poly: no such file" in complaint(capsys, "verify", "lake.1.ele", "--domain", "nix.poly")

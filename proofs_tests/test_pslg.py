@@ -5,6 +5,7 @@ import dataclasses
 import itertools
 import math
 import pickle
+import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -18,7 +19,7 @@ from proofs_tests.oracles import on_segment, orient, rationals
 from exactmesh import PSLG, Carve, CrossingError, ExactMeshError, FaultKind, NonFiniteError, PSLGError, ShapeError
 from exactmesh import seeds as seeds_module
 from exactmesh.coincident import first_of_each, lexicographic_order
-from exactmesh.errors import ChoiceError, CoordinateError
+from exactmesh.errors import ChoiceError, CoordinateError, Fault
 
 SQUARE = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)]
 SIDES = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -175,7 +176,10 @@ class TestAllAtOnce:
         assert found == [(FaultKind.BAD_INDEX, (0,)), (FaultKind.HOLE_OUTSIDE, (0,))]
 
     def test_errors_travel(self) -> None:
-        errors: list[ExactMeshError] = [CrossingError([(0, 3), (1, 2)])]
+        errors: list[ExactMeshError] = [
+            CrossingError([(0, 3), (1, 2)]),
+            CrossingError([(0, 1)], SQUARE, [(0, 2), (1, 3)], remedy="move one", path="a.poly", base=1),
+        ]
         with pytest.raises(PSLGError) as caught:
             PSLG(SQUARE, [(0, 0), (1, 7)])
         errors.append(caught.value)
@@ -192,6 +196,33 @@ class TestAllAtOnce:
         assert error.pairs.shape == (4, 2)
         assert error.indices == (0, 1, 2, 3, 5, 6)
         assert "0 and 3, 1 and 3, 1 and 2 and 1 more pairs" in str(error)
+
+    def test_crossings_are_placed(self) -> None:
+        error = CrossingError([(0, 1)], SQUARE, [(0, 2), (1, 3)], remedy="move one", path="a.poly", base=1)
+        a, b, c, d = (tuple(map(float, corner)) for corner in SQUARE)
+        assert str(error) == f"a.poly: segments cross: 1 and 2 [{a} to {c}, {b} to {d}] (move one)"
+        assert (error.pairs.tolist(), error.indices, error.path) == ([[0, 1]], (0, 1), "a.poly")
+
+    def test_a_message_counts_as_the_file_does(self) -> None:
+        """Every index is counted from the base, coordinates stay, and so does what the fault has for programs."""
+        with pytest.raises(PSLGError) as caught:
+            PSLG(SQUARE, [(0, 0), (1, 7), (1, 2), (2, 1), (-1, 0)], holes=[(9, 9), SQUARE[1]])
+        one = PSLGError(caught.value.faults, base=1)
+        numbers = re.compile(r"(?<![\d.(])-?\d+(?![\d.])")
+        assert "segment 2 (2, 8) has an end that does not exist: points are 1 to 4" in str(one)
+        assert "segments count points from 1" in str(one)
+        assert "segment 1 begins and ends in point 1" in str(one)
+        assert "segment 4 (3, 2) is segment 3 again" in str(one)
+        assert "hole 2 at" in str(one)
+        assert "hole 1 at (9.0, 9.0)" in str(one)
+        assert len(numbers.findall(str(one))) == len(numbers.findall(str(caught.value)))
+        assert one.faults == caught.value.faults
+        assert "#" not in str(one) + str(caught.value)
+
+    def test_the_remedy_is_the_callers(self) -> None:
+        faults = [Fault(FaultKind.NOT_CLOSED, (0,), "segment #0 bounds nothing")]
+        assert "carve=False" in str(PSLGError(faults))
+        assert "--carve none" in str(PSLGError(faults, hull="--carve none"))
 
     @given(graphs())
     def test_messages(self, graph: tuple[list[Point], list[tuple[int, int]], list[Point]]) -> None:

@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
+from typing import TYPE_CHECKING, Annotated, BinaryIO
 
 import typer
 
@@ -95,13 +95,17 @@ def triangulate(
 
 def _rule_of(carve: str | None) -> "Carve | bool":
     """What to carve by; True: the file's own rule, False: nothing."""
-    from exactmesh.pslg import Carve
-
     if carve is None or carve == _KEEP_ALL:
         return carve is None
-    if carve not in tuple(Carve):
-        raise typer.BadParameter(f"{carve!r}; choose from {', '.join((*Carve, _KEEP_ALL))}", param_hint="--carve")
-    return Carve(carve)
+    return _carve(carve, _KEEP_ALL)
+
+
+def _carve(word: str, *others: str) -> "Carve":
+    from exactmesh.pslg import Carve
+
+    if word not in tuple(Carve):
+        raise typer.BadParameter(f"{word!r}; choose from {', '.join((*Carve, *others))}", param_hint="--carve")
+    return Carve(word)
 
 
 @app.command()
@@ -128,38 +132,35 @@ def verify(
         raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
     from exactkernel.jit import is_cache_warm
     from exactmesh.progress import working
-    from exactmesh.verify import verify as check
+    from exactmesh.verify_file import checked_against, checked_alone
 
-    content, graph = _triangles_of(mesh), None if domain is None else _domain_of(domain, carve)
-    assert content.triangles is not None
-    given: dict[str, Any] = {"segments": content.segments} if content.segments is not None else {}
-    if graph is not None:
-        given = {"domain": graph}
-        if len(graph.regions) and content.triangle_attributes is not None:
-            given["labels"] = content.triangle_attributes[:, -1]
+    content = _triangles_of(mesh)
+    graph = None if domain is None else _domain_of(domain, carve)
     with working(f"verifying {mesh}", compiling=not is_cache_warm()):
-        report = check(content.points, content.triangles, claims=claim or None, orientation=orientation, **given)
+        if graph is None:
+            report, note = checked_alone(content, mesh, claim or None, orientation)
+        else:
+            report, note = checked_against(*graph, domain or "", content, claim or None, orientation), ""
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))
+    if json != "-" and note:
+        typer.echo(note)
     if content.base and json != "-" and report.violations:
         typer.echo(f"(Numbers in this report count from 0, those in the files from {content.base}.)")
-    if content.segments is not None and graph is None and json != "-" and not report.ok:
-        typer.echo("(Of a mesh with segments, --domain FILE says what it should cover; without, that is the hull.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 
-def _domain_of(path: str, carve: str | None) -> "PSLG":
+def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
+    """Return the domain on file, and what its numbers count from."""
+    rule = None if carve is None else _carve(carve)
     _require_file(path)
-    from dataclasses import replace
-
-    from exactmesh.io import read_pslg
+    from exactmesh.io import read_graph
     from exactmesh.progress import working
-    from exactmesh.pslg import Carve
 
     with working(f"reading {path}"):
-        pslg = read_pslg(path)
-        return pslg if carve is None else replace(pslg, rule=Carve(carve))
+        pslg, base = read_graph(path)
+    return pslg if rule is None else pslg.with_rule(rule), base
 
 
 def _triangles_of(path: str) -> "Mesh":

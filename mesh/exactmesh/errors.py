@@ -1,5 +1,6 @@
 """What exactmesh raises beyond the kernel's errors; every message names the culprit."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -113,7 +114,7 @@ class FaultKind(StrEnum):
 
 
 _REMEDIES = {
-    FaultKind.BAD_INDEX: "segments count points from 0",
+    FaultKind.BAD_INDEX: "segments count points from #0",
     FaultKind.ZERO_LENGTH: "leave it out",
     FaultKind.REPEATED_SEGMENT: "leave one out",
     FaultKind.HOLE_NOT_FINITE: "give finite coordinates",
@@ -123,9 +124,9 @@ _REMEDIES = {
     FaultKind.REGION_ON_SEGMENT: "move it into the face that it labels",
     FaultKind.REGION_OUTSIDE: "move it into the domain, or leave it out",
     FaultKind.REGIONS_DISAGREE: "give them the same attribute and area, or a segment between them",
-    FaultKind.NOT_CLOSED: "close the outline, or keep the hull with carve=False",
-    FaultKind.INCONSISTENT_PARITY: "close the rings, or carve by seeds",
-    FaultKind.EMPTY_DOMAIN: "look at the rule and the holes, or keep the hull with carve=False",
+    FaultKind.NOT_CLOSED: "close the outline, or keep the hull with {hull}",
+    FaultKind.INCONSISTENT_PARITY: "close the rings; a line that bounds nothing is given twice, on points of its own",
+    FaultKind.EMPTY_DOMAIN: "look at the rule and the holes, or keep the hull with {hull}",
     FaultKind.RING_TOO_SHORT: "a ring needs three vertices at different positions",
     FaultKind.NOT_A_RING: "in a union of rings each point is the end of two segments, or of none",
 }
@@ -134,54 +135,106 @@ _NAMED = 3  # faults of a kind that a message spells out
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that is wrong with a PSLG: its kind, the indices of the culprits (see the kind), and a sentence."""
+    """One thing that is wrong with a PSLG: its kind, the indices of the culprits (see the kind), and a sentence.
+
+    In ``sentence`` an index is written as #7, so that ``told`` can count it as a file does; ``message`` counts from 0.
+    """
 
     kind: FaultKind
     indices: tuple[int, ...]
-    message: str
+    sentence: str
+
+    @property
+    def message(self) -> str:
+        """The sentence, with indices that count from 0."""
+        return self.told(0)
+
+    def told(self, base: int) -> str:
+        """Return the sentence, with indices that count from ``base``."""
+        return _counted(self.sentence, base)
 
     def __str__(self) -> str:
         return self.message
+
+
+def _counted(sentence: str, base: int) -> str:
+    return re.sub(r"#(\d+)", lambda index: str(int(index[1]) + base), sentence)
 
 
 class PSLGError(ExactMeshError):
     """A planar straight line graph with faults: all of them in ``faults``, by kind; the message names the first ones.
 
     ``indices`` are the first index of each fault of the first kind; ``path`` is the file that it came from, or None.
-    All indices count from 0; where the file counts from ``base`` 1, the message says so.
+    These, and those of the faults, count from 0; the message counts as the file does, from ``base``. ``hull`` is what
+    keeps the whole hull, in the words of the caller.
     """
 
-    def __init__(self, faults: Sequence[Fault], *, path: str | None = None, base: int = 0) -> None:
+    def __init__(
+        self, faults: Sequence[Fault], *, path: str | None = None, base: int = 0, hull: str = "carve=False"
+    ) -> None:
         place = "" if path is None else f"{path}: "
-        note = f" [numbers here count from 0, those in the file from {base}]" if base else ""
+        is_told = all("#" in fault.sentence for fault in faults if fault.indices)
+        note = "" if is_told or not base else f" [numbers here count from 0, those in the file from {base}]"
         super().__init__(
-            place + "; ".join(_summaries(faults)) + note,
+            place + "; ".join(_summaries(faults, base if is_told else 0, hull)) + note,
             indices=[i for fault in faults if fault.kind is faults[0].kind for i in fault.indices[:1]],
         )
         self.faults = tuple(faults)
         self.path = path
 
 
-def _summaries(faults: Sequence[Fault]) -> Iterator[str]:
+def _summaries(faults: Sequence[Fault], base: int, hull: str) -> Iterator[str]:
     for kind, group in groupby(faults, key=lambda fault: fault.kind):
         alike = list(group)
-        named = ", ".join(fault.message for fault in alike[:_NAMED])
+        named = ", ".join(fault.told(base) for fault in alike[:_NAMED])
         more = f" and {len(alike) - _NAMED} more" if len(alike) > _NAMED else ""
-        yield f"{named}{more} ({_REMEDIES[kind]})"
+        yield f"{named}{more} ({_counted(_REMEDIES[kind].format(hull=hull), base)})"
 
 
 class CrossingError(ExactMeshError):
     """Segments cross, and nobody asked to split them: ``pairs`` (k, 2) are their rows, int64, all of them.
 
-    ``indices`` are the segments that cross another, each once.
+    ``indices`` are the segments that cross another, each once; ``path`` is the file that they came from, or None. Both
+    count from 0; the message counts from ``base``, and says where the first ones lie if it is given their ends.
+
+    Args:
+        pairs: integers (k, 2), rows of segments.
+        points: (n, 2), those of the segments.
+        segments: (s, 2), the indices of their ends.
+        remedy: what the caller offers.
+        path: the file that the segments came from.
+        base: what indices count from there.
     """
 
-    def __init__(self, pairs: npt.ArrayLike) -> None:
+    def __init__(
+        self,
+        pairs: npt.ArrayLike,
+        points: npt.ArrayLike | None = None,
+        segments: npt.ArrayLike | None = None,
+        *,
+        remedy: str = 'crossings="split" makes their crossings vertices',
+        path: str | None = None,
+        base: int = 0,
+    ) -> None:
         crossing = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-        named = ", ".join(f"{i} and {j}" for i, j in crossing[:_NAMED].tolist())
+        places = {} if points is None or segments is None else _places(crossing[:_NAMED], points, segments)
+        named = ", ".join(
+            f"{i + base} and {j + base}" + (f" [{places[i]}, {places[j]}]" if places else "")
+            for i, j in crossing[:_NAMED].tolist()
+        )
         more = f" and {len(crossing) - _NAMED} more pairs" if len(crossing) > _NAMED else ""
+        place = "" if path is None else f"{path}: "
         super().__init__(
-            f'segments cross: {named}{more} (crossings="split" makes their crossings vertices)',
+            f"{place}segments cross: {named}{more} ({remedy})",
             indices=np.unique(crossing).tolist(),
         )
         self.pairs = crossing
+        self.path = path
+
+
+def _places(rows: npt.NDArray[np.int64], points: npt.ArrayLike, segments: npt.ArrayLike) -> dict[int, str]:
+    """Return where the segments of these rows lie."""
+    coordinates, ends = np.asarray(points), np.asarray(segments)
+    return {
+        s: " to ".join(str(tuple(coordinates[v].tolist())) for v in ends[s].tolist()) for s in np.unique(rows).tolist()
+    }

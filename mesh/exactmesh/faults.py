@@ -35,15 +35,19 @@ def segment_faults(segments: MarkerArray, representative: IntArray) -> tuple[lis
 
 
 def _bad_index(s: int, segments: MarkerArray, n: int) -> Fault:
-    there_are = f"points are 0 to {n - 1}" if n else "there are no points"
-    message = f"segment {s} {_ends(s, segments)} has an end that does not exist: {there_are}"
+    there_are = f"points are #0 to #{n - 1}" if n else "there are no points"
+    message = f"segment #{s} {_ends(s, segments)} has an end that does not exist: {there_are}"
     return Fault(FaultKind.BAD_INDEX, (s,), message)
 
 
 def _zero_length(s: int, segments: MarkerArray) -> Fault:
     a, b = segments[s].tolist()
-    why = f"begins and ends in point {a}" if a == b else f"has no length, for points {a} and {b} have the same position"
-    return Fault(FaultKind.ZERO_LENGTH, (s,), f"segment {s} {why}")
+    why = (
+        f"begins and ends in point #{a}"
+        if a == b
+        else f"has no length, for points #{a} and #{b} have the same position"
+    )
+    return Fault(FaultKind.ZERO_LENGTH, (s,), f"segment #{s} {why}")
 
 
 def _repeated(segments: MarkerArray, sound: Mask) -> Iterator[Fault]:
@@ -55,13 +59,13 @@ def _repeated(segments: MarkerArray, sound: Mask) -> Iterator[Fault]:
     _, first, which = np.unique(keys, return_index=True, return_inverse=True)  # first: the smallest index
     for k in np.flatnonzero(first[which] != np.arange(len(keys))):
         s, original = int(rows[k]), int(rows[first[which[k]]])
-        message = f"segment {s} {_ends(s, segments)} is segment {original} again"
+        message = f"segment #{s} {_ends(s, segments)} is segment #{original} again"
         yield Fault(FaultKind.REPEATED_SEGMENT, (original, s), message)
 
 
 def _ends(s: int, segments: MarkerArray) -> str:
     a, b = segments[s].tolist()
-    return f"({a}, {b})"
+    return f"(#{a}, #{b})" if min(a, b) >= 0 else f"({a}, {b})"
 
 
 def seed_faults(
@@ -80,7 +84,7 @@ def seed_faults(
     not_finite, on_segment, outside = _SEEDS[what]
     usable = np.isfinite(seeds).all(axis=1)
     faults = [
-        Fault(not_finite, (int(i),), f"{what} {i} is {tuple(seeds[i].tolist())}") for i in np.flatnonzero(~usable)
+        Fault(not_finite, (int(i),), f"{what} #{i} is {tuple(seeds[i].tolist())}") for i in np.flatnonzero(~usable)
     ]
     if not usable.any():
         return faults
@@ -89,11 +93,11 @@ def seed_faults(
     inside = inside_hull(points, order, places)
     for k in np.flatnonzero(under >= 0):
         i, s = int(numbers[k]), int(rows[under[k]])
-        message = f"{what} {i} at {_place(seeds[i])} lies on segment {s} {_ends(s, segments)}"
+        message = f"{what} #{i} at {_place(seeds[i])} lies on segment #{s} {_ends(s, segments)}"
         faults.append(Fault(on_segment, (i, s), message))
     for k in np.flatnonzero((under < 0) & (inside == 0)):
         i = int(numbers[k])
-        faults.append(Fault(outside, (i,), f"{what} {i} at {_place(seeds[i])} is not inside the hull of the points"))
+        faults.append(Fault(outside, (i,), f"{what} #{i} at {_place(seeds[i])} is not inside the hull of the points"))
     return faults
 
 

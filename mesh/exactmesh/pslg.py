@@ -42,7 +42,8 @@ class Carve(StrEnum):
 
     @classmethod
     def _missing_(cls, value: object) -> Self:
-        raise ChoiceError(f"{value!r} is no rule for carving; choose from {', '.join(cls)}")
+        hull = "the whole hull is carve=False of constrained_delaunay"
+        raise ChoiceError(f"{value!r} is no rule for carving; choose from {', '.join(cls)} ({hull})")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -70,7 +70,7 @@ def graph_of(pieces: Sequence[Piece]) -> Graph:
         counts.append(len(inner))
         start += len(positions)
     if short:
-        message = "ring {} has fewer than three distinct vertices"
+        message = "ring #{} has fewer than three distinct vertices"
         raise PSLGError([Fault(FaultKind.RING_TOO_SHORT, (i,), message.format(i)) for i in short])
     return Graph(np.concatenate(points), np.concatenate(segments), np.repeat(np.arange(len(counts)), counts))
 
@@ -138,7 +138,7 @@ def vertices_of_rings(segments: IntArray, n: int) -> list[IntArray]:
     _link(segments, links, degree)
     odd = np.flatnonzero((degree != 0) & (degree != 2))
     if odd.size:
-        message = "point {} is the end of {}"
+        message = "point #{} is the end of {}"
         raise PSLGError(
             [Fault(FaultKind.NOT_A_RING, (v,), message.format(v, _segments(int(degree[v])))) for v in odd.tolist()]
         )

@@ -23,6 +23,8 @@ from exactmesh.triangulation import Triangulation
 __all__ = ["files_of", "next_name", "triangulate_graph", "triangulate_points"]
 
 _NAMED = 3  # duplicates that a line spells out
+_HULL = "--carve none"
+_SPLIT = "--crossings split makes their crossings vertices"
 _TOGETHER = (".node", ".ele", ".poly")
 
 
@@ -77,23 +79,17 @@ def triangulate_graph(source: str, target: str, seed: int, carve: Carve | bool, 
         try:
             mesh = constrained_delaunay(pslg, carve=carve, crossings=crossings, seed=seed, progress=progress)
         except PSLGError as error:
-            raise PSLGError(error.faults, path=source, base=base) from None
+            raise PSLGError(error.faults, path=source, base=base, hull=_HULL) from None
         except CrossingError as error:
-            raise FileFormatError(_crossing(error, base), path=source) from None
+            raise CrossingError(
+                error.pairs, pslg.points, pslg.segments, path=source, base=base, remedy=_SPLIT
+            ) from None
         except ExactMeshError as error:
             raise FileFormatError(str(error), path=source) from error
     paths = _write(target, replace(mesh_of(mesh), base=base))
     duplicates = pslg.duplicates
     yield from _duplicates(len(pslg.points), duplicates, pslg.representative[duplicates[:_NAMED]], base)
     yield f"{', '.join(_facts(pslg, mesh))}: {' '.join(paths)}"
-
-
-def _crossing(error: CrossingError, base: int) -> str:
-    """The error as one who looks into the file and types commands wants to read it."""
-    pairs = (error.pairs + base).tolist()
-    named = ", ".join(f"{i} and {j}" for i, j in pairs[:_NAMED])
-    more = f" and {len(pairs) - _NAMED} more pairs" if len(pairs) > _NAMED else ""
-    return f"segments cross: {named}{more}; --crossings split makes their crossings vertices"
 
 
 def _facts(pslg: PSLG, mesh: Triangulation) -> Iterator[str]:

@@ -52,6 +52,8 @@ __all__ = ["TriangulationBuilder"]
 
 _CHUNK = 1 << 15  # points between two looks at Ctrl-C, where predicates are fast
 _NAMED = 3  # segments that a message spells out
+_SPLIT = 'make the builder from constrained_delaunay(pslg, carve=False, crossings="split")'
+_POINT_FIRST = "insert a point where they cross, and segments by way of it"
 
 
 def _row(point: PointLike) -> FloatArray:
@@ -122,7 +124,10 @@ class TriangulationBuilder:
         draft.tally[SEGMENTS] = len(ends)
         self._settle(draft._replace(ends=np.concatenate([ends, np.empty((8, 2), dtype=np.int64)])), len(graph.points))
         if self._draft.tally[NUMBERS] == 0:
-            constrained_delaunay(graph, carve=False)
+            try:
+                constrained_delaunay(graph, carve=False)
+            except CrossingError as error:
+                raise CrossingError(error.pairs, graph.points, graph.segments, remedy=_SPLIT) from None
             raise CrossingError([])
 
     @classmethod
@@ -234,7 +239,8 @@ class TriangulationBuilder:
         >>> builder = TriangulationBuilder([(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 2)])
         >>> builder.insert_segment(1, 3)
         Traceback (most recent call last):
-        exactmesh.errors.CrossingError: segments cross: 0 and 1 (crossings="split" makes their crossings vertices)
+        exactmesh.errors.CrossingError: segments cross: 0 and 1 [(0.0, 0.0) to (4.0, 4.0), (4.0, 0.0) to \
+(0.0, 4.0)] (insert a point where they cross, and segments by way of it)
         """
         a, b = self._vertex(u), self._vertex(v)
         if a == b:
@@ -246,7 +252,9 @@ class TriangulationBuilder:
         number = int(self._draft.tally[SEGMENTS])
         if way.crossed:
             crossing = members(self._draft, self._draft.plane.crossed[: way.crossed])
-            raise CrossingError([(s, number) for s in crossing])
+            ends = np.vstack([self.segments, (a, b)])
+            points = np.ldexp(self._draft.plane.xy.reshape(-1, 2), -self._draft.exponent)
+            raise CrossingError([(s, number) for s in crossing], points, ends, remedy=_POINT_FIRST)
         if way.same >= 0:
             return int(way.same)
         self._draft = draft = with_room_for_segments(self._draft, int(way.shared) + 2)

@@ -105,7 +105,21 @@ def _labels(labels: npt.ArrayLike, m: int) -> FloatArray:
     return doubles
 
 
+def _require_domain(domain: object) -> None:
+    if all(hasattr(domain, name) for name in ("points", "segments", "holes", "regions", "rule")):
+        return
+    remedy = "make one with PSLG(points, segments)"
+    if hasattr(domain, "domain"):
+        remedy = "give its .domain"
+    elif hasattr(domain, "geom_type"):
+        remedy = "make one with PSLG.from_shapely"
+    elif isinstance(domain, dict):
+        remedy = "make one with PSLG.from_geojson, or PSLG(**domain)"
+    raise ShapeError(f"domain: expected a PSLG, not a {type(domain).__name__}: {remedy}")
+
+
 def _outline(domain: Domain) -> Outline:
+    _require_domain(domain)
     rule = str(domain.rule)
     if rule not in _RULES:
         raise ChoiceError(f"{rule!r} is no rule for a domain; choose from {', '.join(_RULES)}")
@@ -131,13 +145,13 @@ def _outline(domain: Domain) -> Outline:
 def _faults(points: FloatArray, segments: Integers) -> list[Fault]:
     outside = ((segments < 0) | (segments >= len(points))).any(axis=1)
     faults = [
-        Fault(FaultKind.BAD_INDEX, (i,), f"segment {i} {tuple(segments[i].tolist())} has an end that does not exist")
+        Fault(FaultKind.BAD_INDEX, (i,), f"segment #{i} {tuple(segments[i].tolist())} has an end that does not exist")
         for i in np.flatnonzero(outside).tolist()
     ]
     sound = np.flatnonzero(~outside)
     a, b = segments[sound].astype(np.intp).T
     empty = sound[(points[a] == points[b]).all(axis=1)]
-    return faults + [Fault(FaultKind.ZERO_LENGTH, (i,), f"segment {i} has no length") for i in empty.tolist()]
+    return faults + [Fault(FaultKind.ZERO_LENGTH, (i,), f"segment #{i} has no length") for i in empty.tolist()]
 
 
 def require_even_ends(outline: Outline, position: IndexArray) -> None:
@@ -163,7 +177,7 @@ def require_even_ends(outline: Outline, position: IndexArray) -> None:
                 Fault(
                     FaultKind.INCONSISTENT_PARITY,
                     (v,),
-                    f"an odd number of segments ends in point {point_name(outline.points, v)}",
+                    f"an odd number of segments ends in point #{point_name(outline.points, v)}",
                 )
                 for v in points
             ]
