@@ -14,7 +14,18 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactmesh import PSLG, Carve, ExactMeshError, FaultKind, GeometryError, NonFiniteError, PSLGError, ShapeError
+from exactmesh import (
+    PSLG,
+    Carve,
+    ExactMeshError,
+    FaultKind,
+    GeometryError,
+    NonFiniteError,
+    PSLGError,
+    ShapeError,
+    constrained_delaunay,
+    verify,
+)  # fmt: skip
 from exactmesh import geojson as geojson_module
 
 Point = tuple[float, float]
@@ -108,7 +119,8 @@ class TestKindsOfGeometry:
         text = shapely.to_geojson(geometry)
         feature = {"type": "Feature", "properties": {"name": "a"}, "geometry": json.loads(text)}
         collection = {"type": "FeatureCollection", "features": [feature, {"type": "Feature", "geometry": None}]}
-        expected = PSLG(np.array(points, dtype=np.float64).reshape(-1, 2), segments, rule="even-odd")
+        rule = "seeds" if "LINE" in wkt else "even-odd"
+        expected = PSLG(np.array(points, dtype=np.float64).reshape(-1, 2), segments, rule=rule)
         for read in (
             PSLG.from_shapely(geometry),
             PSLG.from_shapely([geometry]),
@@ -120,6 +132,46 @@ class TestKindsOfGeometry:
             assert read == expected
 
 
+class TestLinesBesidePolygons:
+    """A line separates nothing: beside polygons, the domain is theirs, and the line is edges where it is inside."""
+
+    polygon = shapely.Polygon(SQUARE, [[(2, 2), (4, 2), (4, 4), (2, 4)]])
+    lines = (
+        shapely.LineString([(5.0, 5.0), (8.0, 5.0), (8.0, 8.0)]),
+        shapely.LineString([(6.0, 1.0), (8.0, 1.0), (8.0, 3.0), (6.0, 1.0)]),
+        shapely.LineString([(4.0, 4.0), (9.0, 9.0)]),
+        shapely.LineString([(0.0, 0.0), (9.0, 0.0)]),
+        shapely.LineString([(1.0, 1.0), (20.0, 1.0)]),
+    )
+
+    @pytest.mark.parametrize("line", lines, ids=["open", "closed", "a bridge", "on a side", "through a side"])
+    def test_domain_and_segments(self, line: shapely.LineString) -> None:
+        pslg = PSLG.from_shapely([self.polygon, line])
+        assert pslg.rule is Carve.EVEN_ODD
+        assert pslg == PSLG.from_geojson(shapely.to_geojson(shapely.GeometryCollection([self.polygon, line])))
+        assert pslg.to_shapely().area == 81 - 4
+        mesh = constrained_delaunay(pslg, crossings="split")
+        assert verify(mesh.points, mesh.triangles, domain=mesh.domain).ok
+        assert mesh.statistics().area == 81 - 4
+        kept = shapely.union_all(shapely.linestrings(mesh.points[mesh.segments]))
+        assert kept.covers(line.intersection(self.polygon))
+
+    def test_control_a_line_given_once_has_no_parity(self) -> None:
+        pslg = PSLG.from_shapely([self.polygon, self.lines[0]])
+        once = PSLG(pslg.points, pslg.segments[:-2], rule="even-odd")
+        with pytest.raises(PSLGError, match="an odd number"):
+            constrained_delaunay(once)
+
+    def test_control_a_closed_line_given_once_would_be_a_hole(self) -> None:
+        pslg = PSLG.from_shapely([self.polygon, self.lines[1]])
+        once = PSLG(pslg.points, pslg.segments[:-3], rule="even-odd")
+        assert once.to_shapely().area == 81 - 4 - 2
+
+    def test_lines_alone_are_carved_by_seeds(self) -> None:
+        pslg = PSLG.from_shapely(self.lines[:2])
+        assert (pslg.rule, len(pslg.segments), len(pslg.duplicates)) == (Carve.SEEDS, 5, 0)
+
+
 class TestWhatIsRefused:
     """Geometry that is none, or not planar, raises a typed error of one line that says where."""
 
@@ -127,6 +179,7 @@ class TestWhatIsRefused:
         ("source", "error", "words"),
         [
             ("{", GeometryError, "is no JSON: .*line 1"),
+            ("folder/x.geojson", GeometryError, "is no JSON: .*; files are for exactmesh.io.read_pslg"),
             (b"\xff\xfe{", GeometryError, "is no"),
             ("[" * 100_000, GeometryError, "nested too deeply"),
             ("[]", GeometryError, r"GeoJSON is \[\], not an object"),
@@ -178,8 +231,10 @@ class TestWhatIsRefused:
             PSLG.from_rings([SQUARE, [(0, 0, 0)]])
         with pytest.raises(NonFiniteError, match=r"rings\[0\]\[1\]"):
             PSLG.from_rings([[(0, 0), (0, np.nan), (1, 1)]])
-        with pytest.raises(ShapeError, match="ring_markers has 1 rows for 2 rings"):
+        with pytest.raises(ShapeError, match="markers has 1 rows for 2 rings"):
             PSLG.from_rings([SQUARE, SQUARE], markers=[1])
+        with pytest.raises(ShapeError, match=r"^markers has shape"):
+            PSLG.from_rings([SQUARE], markers=7)
 
     @pytest.mark.parametrize(
         ("geometry", "words"),

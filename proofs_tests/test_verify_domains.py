@@ -6,6 +6,7 @@ from random import Random
 
 import numpy as np
 import pytest
+import shapely
 from proofs_tests.test_verify import STAR
 from proofs_tests.test_verify_constrained import (
     DOMAINS,
@@ -20,7 +21,7 @@ from proofs_tests.test_verify_constrained import (
 
 from exactkernel import NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
-from exactmesh import PSLG
+from exactmesh import PSLG, constrained_delaunay
 from exactmesh.errors import ChoiceError, PSLGError
 from exactmesh.verify import (
     CONSTRAINED_TRIANGULATION,
@@ -388,6 +389,19 @@ class TestInput:
             verify(SQUARE, QUARTERS, segments=[(0, 1, 2)])
         with pytest.raises(ShapeError, match="53"):
             verify(SQUARE, QUARTERS, segments=[(0, 1)], labels=[2**53 + 1] * 4)
+
+    @pytest.mark.parametrize(
+        ("domain", "words"),
+        [
+            (shapely.Polygon(SQUARE[:4]), "expected a PSLG, not a Polygon: make one with PSLG.from_shapely"),
+            ({"points": SQUARE, "segments": SPOKES}, "expected a PSLG, not a dict: make one with"),
+            (constrained_delaunay(PSLG(SQUARE, SPOKES)), "expected a PSLG, not a Triangulation: give its .domain"),
+            (SQUARE, "expected a PSLG, not a list"),
+        ],
+    )
+    def test_what_is_no_domain(self, domain: object, words: str) -> None:
+        with pytest.raises(ShapeError, match=words):
+            verify(SQUARE, QUARTERS, domain=domain)  # type: ignore[arg-type]  # a wrong type
 
     def test_unreadable(self) -> None:
         report = verify([*SQUARE[:4], (np.nan, 1)], QUARTERS, domain=PSLG(SQUARE, SPOKES))

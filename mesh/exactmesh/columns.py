@@ -24,6 +24,7 @@ __all__ = [
 
 MarkerArray = npt.NDArray[np.int64]
 
+_REGIONS = "(r, 4): x, y, attribute, area; or (r, 3)"
 _UNLIMITED = -1.0  # area of a region that is given without one
 
 A = TypeVar("A", bound=npt.NDArray[np.generic])
@@ -117,7 +118,7 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
     if array is None:
         return None
     if len(array) != count:
-        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments", "r": "rings"}[name[0]]
+        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments"}[name[0]]
         raise ShapeError(f"{name} has {len(array)} rows for {'no' if count is None else count} {of}")
     return array
 
@@ -125,11 +126,14 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
 def regions_of(values: npt.ArrayLike | None, name: str) -> FloatArray:
     """Return rows x, y, attribute, area, (r, 4); rows of three get an area of -1: unlimited. NaN and infinity pass."""
     _refuse_masked(values, name)
-    array = unrounded_array(() if values is None else values, name)
+    try:
+        array = unrounded_array(() if values is None else values, name)
+    except ShapeError:
+        raise ShapeError(f"{name} has rows of different lengths; expected {_REGIONS}") from None
     if array.size == 0 and array.ndim <= 2:
         return np.zeros((0, 4))
     if array.ndim != 2 or array.shape[1] not in (3, 4):
-        raise ShapeError(f"{name} has shape {array.shape}; expected (r, 4): x, y, attribute, area; or (r, 3)")
+        raise ShapeError(f"{name} has shape {array.shape}; expected {_REGIONS}")
     places, bounds = exact_doubles(array[:, :2], name), exact_doubles(array[:, [2, -1]], name)
     if array.shape[1] == 3:
         bounds[:, 1] = _UNLIMITED

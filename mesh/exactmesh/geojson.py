@@ -15,6 +15,7 @@ from exactmesh.rings import Piece, Shape
 __all__ = ["geojson_of", "pieces_of_geojson"]
 
 _DEEPEST = 60  # collections within collections
+_LONGEST_PATH = 4096
 _NUMBERS = {int, float}
 
 
@@ -41,7 +42,13 @@ def _parsed(text: str | bytes) -> object:
     except ExactMeshError:
         raise
     except ValueError as error:  # JSONDecodeError, or an integer of thousands of digits
-        raise GeometryError(f"is no JSON: {error}") from None
+        raise GeometryError(f"is no JSON: {error}{_hint(text)}") from None
+
+
+def _hint(text: str | bytes) -> str:
+    words = text.decode(errors="replace") if isinstance(text, bytes) else text
+    is_a_path = len(words) < _LONGEST_PATH and words.rstrip().endswith((".geojson", ".json"))
+    return "; files are for exactmesh.io.read_pslg" if is_a_path else ""
 
 
 def _of_object(value: object, where: str, depth: int) -> Iterator[Piece]:

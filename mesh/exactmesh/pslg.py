@@ -168,6 +168,10 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
 
         Rings of polygons and lines become segments, points become points, in their order; properties are not read.
 
+        Even-odd counts: of polygons that overlap, the domain is their symmetric difference; for their union, unite them
+        before (``shapely.union_all``). A line separates nothing: beside polygons it counts twice, and so each of its
+        segments is there twice, on points of its own. Lines alone are to be carved by seeds, and are there once.
+
         Args:
             source: the text, or the dictionary that it stands for: a geometry, a Feature, a FeatureCollection.
 
@@ -178,6 +182,8 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         >>> from exactmesh import PSLG
         >>> PSLG.from_geojson('{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 0.1], [0, 0]]]}')
         PSLG(3 points, 3 segments, 0 holes, 0 regions, carve by even-odd)
+        >>> PSLG.from_geojson('{"type": "LineString", "coordinates": [[0, 0], [1, 0]]}')
+        PSLG(2 points, 1 segment, 0 holes, 0 regions, carve by seeds)
         """
         return cls._of(pieces_of_geojson(source))
 
@@ -186,6 +192,10 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         """Return the PSLG of one shapely geometry or of several, to be carved by even-odd. Needs the extra ``shapely``.
 
         Rings of polygons and lines become segments, points become points, in their order, bit for bit.
+
+        Even-odd counts: of polygons that overlap, the domain is their symmetric difference; for their union, unite them
+        before (``shapely.union_all``). A line separates nothing: beside polygons it counts twice, and so each of its
+        segments is there twice, on points of its own. Lines alone are to be carved by seeds, and are there once.
 
         Raises:
             ShapelyUnavailableError: shapely is not installed; the message says how to get it.
@@ -197,9 +207,12 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
     @classmethod
     def _of(cls, pieces: Sequence[Piece], markers: npt.ArrayLike | None = None) -> Self:
         graph = graph_of(pieces)
-        of_piece = rows_for(markers_of(markers, "ring_markers"), "ring_markers", len(pieces))
+        of_piece = markers_of(markers, "markers")
+        if of_piece is not None and len(of_piece) != len(pieces):
+            raise ShapeError(f"markers has {len(of_piece)} rows for {len(pieces)} rings")
         segment_markers = None if of_piece is None else of_piece[graph.piece]
-        return cls(graph.points, graph.segments, segment_markers=segment_markers, rule=Carve.EVEN_ODD)
+        rule = Carve.SEEDS if graph.only_lines else Carve.EVEN_ODD
+        return cls(graph.points, graph.segments, segment_markers=segment_markers, rule=rule)
 
     def rings(self) -> list[FloatArray]:
         """Return the cycles that the segments form, arrays (k, 2) that do not repeat the first vertex.

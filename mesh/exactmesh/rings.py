@@ -34,11 +34,12 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """Points (n, 2), segments (s, 2), and the piece that each segment comes from (s,)."""
+    """Points (n, 2), segments (s, 2), the piece that each segment comes from (s,), and whether all are of lines."""
 
     points: FloatArray
     segments: MarkerArray
     piece: npt.NDArray[np.intp]
+    only_lines: bool
 
 
 def pieces_of_rings(rings: Iterable[npt.ArrayLike]) -> list[Piece]:
@@ -50,13 +51,15 @@ def graph_of(pieces: Sequence[Piece]) -> Graph:
     """Return all positions as points, in their order, and the segments between consecutive ones. Linear time.
 
     The repeated end of a ring, or of a closed line, is its first point. A position that repeats its predecessor is a
-    point of its own, and no segment leads to it.
+    point of its own, and no segment leads to it. Among rings a line separates nothing: it is there twice, on points of
+    its own, so that no parity depends on it.
 
     Raises:
         PSLGError: rings with fewer than three distinct positions; all of them are named.
     """
     points, segments, counts = [np.empty((0, 2))], [np.empty((0, 2), dtype=np.int64)], []
     short, start, ring = [], 0, -1
+    shapes = {piece.shape for piece in pieces}
     for piece in pieces:
         positions, ring = piece.positions, ring + (piece.shape is Shape.RING)
         if piece.shape is Shape.POINTS:
@@ -65,6 +68,9 @@ def graph_of(pieces: Sequence[Piece]) -> Graph:
             positions, inner = _path(positions, is_ring=piece.shape is Shape.RING)
             if piece.shape is Shape.RING and not _has_three(positions):
                 short.append(ring)
+            if piece.shape is Shape.LINE and Shape.RING in shapes:
+                inner = np.concatenate([inner, inner + len(positions)])
+                positions = np.concatenate([positions, positions])
         points.append(positions)
         segments.append(inner + start)
         counts.append(len(inner))
@@ -72,7 +78,9 @@ def graph_of(pieces: Sequence[Piece]) -> Graph:
     if short:
         message = "ring #{} has fewer than three distinct vertices"
         raise PSLGError([Fault(FaultKind.RING_TOO_SHORT, (i,), message.format(i)) for i in short])
-    return Graph(np.concatenate(points), np.concatenate(segments), np.repeat(np.arange(len(counts)), counts))
+    only_lines = Shape.LINE in shapes and Shape.RING not in shapes
+    piece_of = np.repeat(np.arange(len(counts)), counts)
+    return Graph(np.concatenate(points), np.concatenate(segments), piece_of, only_lines)
 
 
 def _path(positions: FloatArray, *, is_ring: bool) -> tuple[FloatArray, MarkerArray]:

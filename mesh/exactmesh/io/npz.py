@@ -19,6 +19,7 @@ from exactmesh.io.text import read_bytes
 __all__ = ["read_npz", "write_npz"]
 
 _ARRAYS = tuple(field.name for field in fields(Mesh) if field.name != "base")
+_NAMED = 8  # arrays that a message spells out
 _DEFLATE_AT_MOST = 1033  # deflate cannot shrink further: a larger claim is a lie
 _BROKEN = (
     ValueError,
@@ -59,7 +60,9 @@ def read_npz(path: str) -> Mesh:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise FileFormatError(f"is no readable .npz archive: {reason}", path=path) from None
     if "points" not in arrays:
-        raise FileFormatError("holds no array named 'points'", path=path)
+        held = ", ".join(sorted(names)[:_NAMED]) or "nothing"
+        expected = "points (n, 2), and what there is of triangles (m, 3), segments (s, 2) and so on"
+        raise FileFormatError(f"holds no array named 'points', but {held}; expected are {expected}", path=path)
     base = arrays.pop("base", np.zeros((), dtype=np.int64))
     if base.shape != () or base.dtype.kind not in "iu":
         raise FileFormatError("'base' is not one integer", path=path)
