@@ -367,7 +367,10 @@ class TestArchives:
     @pytest.mark.parametrize(
         ("arrays", "what"),
         [
-            ({"triangles": np.zeros((1, 3), dtype=int)}, "no array named 'points'"),
+            (
+                {"faces": np.zeros((1, 3), dtype=int)},
+                "no array named 'points', but faces; expected are points (n, 2), and what",
+            ),
             ({"points": np.zeros(3)}, "shape (3,)"),
             ({"points": np.array([["a", "b"]])}, "not numbers"),
             ({"points": np.array([[None, 1.0]])}, "not numbers"),

@@ -78,6 +78,11 @@ class TestCacheFolder:
         (tmp_path / "f.nbi").touch()
         assert jit.is_cache_warm()
         assert jit.cache_directory() == tmp_path
+        assert not jit.is_cache_warm(_increment)
+        (tmp_path / "module._increment_other-3.py311.nbi").touch()
+        assert not jit.is_cache_warm(_increment)
+        (tmp_path / "module._increment-3.py311.nbi").touch()
+        assert jit.is_cache_warm(_increment)
         monkeypatch.setattr(jit, "_CACHE", None)
         assert jit.is_cache_warm()
 

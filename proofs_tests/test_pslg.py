@@ -352,6 +352,7 @@ class TestUnreadable:
             ({"holes": [(0, 0, 1)]}, ShapeError, "holes"),
             ({"holes": [("a", "b")]}, CoordinateError, "holes"),
             ({"regions": [(0, 0)]}, ShapeError, r"regions has shape \(1, 2\)"),
+            ({"regions": [(1, 1, 2), (1, 1, 2, 3)]}, ShapeError, r"regions has rows of different.*\(r, 4\).* \(r, 3\)"),
             ({"regions": [(0, 0, 1), (0, 0, 1, 1)]}, ShapeError, "regions"),
             ({"regions": [(0, 0, 2**53 + 1)]}, CoordinateError, r"regions\[0\]"),
             ({"point_markers": [1]}, ShapeError, "point_markers has 1 rows for 4 points"),

@@ -21,6 +21,7 @@ from proofs_tests.oracles import Triangle
 
 from exactkernel.jit import COMPILED
 from exactmesh import PSLG, ExactMeshError, Triangulation, constrained_delaunay, delaunay
+from exactmesh.demo import lake
 from exactmesh.locate import locate_points
 
 #: Corners of the doubles, subnormals, both zeros, and no common window.
@@ -120,6 +121,25 @@ def is_close(figure: float, exact: Fraction, error: Fraction) -> bool:
     if math.isinf(figure):
         return exact > Fraction(2) ** 1023
     return abs(Fraction(figure) - exact) <= error + Fraction(2) ** -1074
+
+
+class TestNeedles:
+    """The smallest angle is relatively right to 2^-20 where short sides are exact: no needle has an angle of 0."""
+
+    def test_the_lake(self) -> None:
+        mesh = constrained_delaunay(lake(), crossings="split")
+        exact = oracles.rationals(mesh.points.tolist())
+        smallest = smallest_angle(mesh_oracle.sharpest_corner(exact, triangles_of(mesh)))
+        assert 0.0 < smallest < 1e-13
+        assert math.isclose(mesh.statistics().smallest_angle, smallest, rel_tol=2.0**-20)
+
+    def test_control_from_the_long_sides_it_is_lost(self) -> None:
+        mesh = constrained_delaunay(lake(), crossings="split")
+        a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2)
+        sides = np.stack([c - b, a - c, b - a])
+        first, second = np.roll(sides, 1, axis=0), np.roll(sides, 2, axis=0)
+        cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+        assert (cross == 0.0).any()
 
 
 def smallest_angle(cotangent: Fraction) -> float:

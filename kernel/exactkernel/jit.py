@@ -104,9 +104,12 @@ def cache_directory() -> Path | None:
     return _CACHE
 
 
-def is_cache_warm() -> bool:
-    """Tell whether some function of this version was compiled on this machine before."""
-    return _CACHE is None or any(_CACHE.rglob("*.nbi"))
+def is_cache_warm(*functions: Callable[..., object]) -> bool:
+    """Tell whether these functions, or some function if none is given, of this version were compiled here before."""
+    if _CACHE is None:
+        return True
+    patterns = [f"*.{function.__name__}-*.nbi" for function in functions] or ["*.nbi"]
+    return all(any(_CACHE.rglob(pattern)) for pattern in patterns)
 
 
 def _compile(function: Callable[P, R], *, always_inline: bool) -> Callable[P, R]:

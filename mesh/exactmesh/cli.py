@@ -132,11 +132,14 @@ def verify(
         raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
     from exactkernel.jit import is_cache_warm
     from exactmesh.progress import working
+    from exactmesh.verify.boundary import walk_convex
+    from exactmesh.verify.chains import walk_chains
     from exactmesh.verify_file import checked_against, checked_alone
 
     content = _triangles_of(mesh)
     graph = None if domain is None else _domain_of(domain, carve)
-    with working(f"verifying {mesh}", compiling=not is_cache_warm()):
+    needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
+    with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
         if graph is None:
             report, note = checked_alone(content, mesh, claim or None, orientation)
         else:

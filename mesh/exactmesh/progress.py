@@ -23,11 +23,15 @@ def _ignore(_done: int, _total: int) -> None:
 def working(task: str, *, compiling: bool = False) -> Iterator[Callable[[int, int], None]]:
     """Show a spinner on standard error, if it is a terminal, when the block takes longer than a second.
 
+    Elsewhere, one line says that there is something to compile, for that takes long.
+
     Yields:
         A callback (done, total) that turns the spinner into a bar.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
+        if compiling:
+            console.print(f"{task}: {COMPILING}", markup=False, highlight=False, soft_wrap=True)
         yield _ignore
         return
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())

@@ -68,10 +68,12 @@ def lengths_of(points: FloatArray, triangles: IntArray) -> FloatArray:
 
 
 def angles_of(points: FloatArray, triangles: IntArray) -> FloatArray:
-    """Return the angle at each corner in degrees, float64 (m, 3)."""
+    """Return the angle at each corner in degrees, float64 (m, 3); those of a needle are small, and not 0."""
     sides, _ = _normalised_sides(points, triangles)
     after, before = np.roll(sides, -1, axis=1), np.roll(sides, -2, axis=1)
-    cross = np.abs(after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0])
+    longest = (sides**2).sum(axis=2).argmax(axis=1)[:, None, None]
+    first, second = (np.take_along_axis(sides, (longest + i) % 3, axis=1)[:, 0] for i in (1, 2))
+    cross = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])[:, None]  # the longest would cancel most
     angles: FloatArray = np.degrees(np.arctan2(cross, -(after * before).sum(axis=2)))
     return angles
 

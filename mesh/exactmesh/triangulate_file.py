@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.jit import is_cache_warm
-from exactmesh.constrain import Crossings, constrained_delaunay
-from exactmesh.delaunay import delaunay
+from exactmesh.constrain import Crossings, constrain_range, constrained_delaunay
+from exactmesh.delaunay import delaunay, insert_range
 from exactmesh.errors import CrossingError, ExactMeshError, FileFormatError, PSLGError
 from exactmesh.io import Mesh, mesh_of, read_graph, read_points, write
 from exactmesh.io.poly import has_points
@@ -50,7 +50,7 @@ def triangulate_points(source: str, target: str, seed: int) -> Iterator[str]:
     """Write the Delaunay triangulation of the points in a file; yield lines that say what was done."""
     with working(f"reading {source}"):
         points = read_points(source)
-    with working("triangulating", compiling=not is_cache_warm()) as progress:
+    with working("triangulating", compiling=not is_cache_warm(insert_range)) as progress:
         try:
             triangulation = delaunay(points.points, seed=seed, progress=progress)
         except ExactMeshError as error:
@@ -75,7 +75,7 @@ def triangulate_graph(source: str, target: str, seed: int, carve: Carve | bool, 
     """Write the constrained Delaunay triangulation of the graph in a file; yield lines that say what was done."""
     with working(f"reading {source}"):
         pslg, base = read_graph(source)
-    with working("triangulating", compiling=not is_cache_warm()) as progress:
+    with working("triangulating", compiling=not is_cache_warm(insert_range, constrain_range)) as progress:
         try:
             mesh = constrained_delaunay(pslg, carve=carve, crossings=crossings, seed=seed, progress=progress)
         except PSLGError as error:
