@@ -116,7 +116,10 @@ def verify(
         typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all that fits."),
     ] = None,
     domain: Annotated[
-        str | None, typer.Option(metavar="FILE", help="What MESH should cover: .poly, .geojson or .json.")
+        str | None,
+        typer.Option(
+            metavar="FILE", help="What MESH should cover: .poly, .geojson; default: its own segments, or the hull."
+        ),
     ] = None,
     carve: Annotated[
         str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
