@@ -5,20 +5,20 @@ from pathlib import Path
 
 from PIL import Image  # comes with matplotlib
 
-from exactkernel.types import FloatArray
-from exactmesh import delaunay
-from exactmesh.demo import course_points, mosaic
+from exactmesh import Triangulation, constrained_delaunay, delaunay
+from exactmesh.demo import course_points, lake, mosaic
 from exactmesh.plot import plot_mesh
 
 HERE = Path(__file__).resolve().parent / "_static"
 
 
-def draw(name: str, points: FloatArray, title: str, *, width: int) -> None:
-    """Draw a Delaunay triangulation, then shrink it: few colours, few pixels, few bytes."""
-    mesh = delaunay(points)
+def draw(name: str, mesh: Triangulation, title: str, *, width: int) -> None:
+    """Draw a triangulation, then shrink it: few colours, few pixels, few bytes."""
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / f"{name}.png"
-        plot_mesh(mesh.points, mesh.triangles, large, title=title)
+        plot_mesh(
+            mesh.points, mesh.triangles, large, segments=mesh.segments if len(mesh.segments) else None, title=title
+        )
         with Image.open(large) as picture:
             height = round(picture.height * width / picture.width)
             small = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
@@ -27,5 +27,6 @@ def draw(name: str, points: FloatArray, title: str, *, width: int) -> None:
 
 if __name__ == "__main__":
     HERE.mkdir(exist_ok=True)
-    draw("mosaic", mosaic(), "A grid, rings, a sunflower and spirals", width=880)
-    draw("course", course_points(), "The course's five points", width=480)
+    draw("mosaic", delaunay(mosaic()), "A grid, rings, a sunflower and spirals", width=880)
+    draw("course", delaunay(course_points()), "The course's five points", width=480)
+    draw("lake", constrained_delaunay(lake(), crossings="split"), "A lake, islands, and dikes that cross", width=880)

@@ -242,7 +242,7 @@ def constrained_delaunay(
     mesh = triangulated(Task(pslg, pslg, None, rule), seed, progress)
     if mesh is None:
         if treatment is Crossings.ERROR:
-            raise CrossingError(crossing_pairs(pslg.points, pslg.segments))
+            raise CrossingError(crossing_pairs(pslg.points, pslg.segments), pslg.points, pslg.segments)
         arrangement = arrange(pslg)
         mesh = triangulated(Task(arrangement.pslg, pslg, arrangement, rule), seed, progress)
         assert mesh is not None  # an arrangement is planar

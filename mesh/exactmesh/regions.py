@@ -108,7 +108,7 @@ def check_parity(pslg: PSLG) -> None:
         Fault(
             FaultKind.INCONSISTENT_PARITY,
             (int(v),),
-            f"at point {v} {tuple(pslg.points[v].tolist())} {_count(int(degree[v]))}, an odd number",
+            f"at point #{v} {tuple(pslg.points[v].tolist())} {_count(int(degree[v]))}, an odd number",
         )
         for v in np.flatnonzero(degree & 1)
     ]
@@ -146,7 +146,7 @@ def _outside(
     kind: FaultKind, what: str, seeds: list[list[float]], triangles: IntArray, outside: BoolArray
 ) -> list[Fault]:
     lost = [i for i, t in enumerate(triangles.tolist()) if t < 0 or outside[t]]
-    return [Fault(kind, (i,), f"{what} {i} at {tuple(seeds[i][:2])} is outside the domain") for i in lost]
+    return [Fault(kind, (i,), f"{what} #{i} at {tuple(seeds[i][:2])} is outside the domain") for i in lost]
 
 
 def open_faults(pslg: PSLG, lost: IntArray) -> list[Fault]:
@@ -168,13 +168,13 @@ def open_faults(pslg: PSLG, lost: IntArray) -> list[Fault]:
 
 def _lost_segment(pslg: PSLG, s: int, loose: list[bool]) -> str:
     ends = pslg.segments[s].tolist()
-    places = [f"point {v} {tuple(pslg.points[v].tolist())}" for v, end in zip(ends, loose, strict=True) if end]
+    places = [f"point #{v} {tuple(pslg.points[v].tolist())}" for v, end in zip(ends, loose, strict=True) if end]
     where = f", with the loose end {' and '.join(places)}," if places else ""
-    return f"segment {s} ({ends[0]}, {ends[1]}){where} has the exterior on both sides"
+    return f"segment #{s} (#{ends[0]}, #{ends[1]}){where} has the exterior on both sides"
 
 
 def _disagreement(first: int, later: int) -> Fault:
-    return Fault(FaultKind.REGIONS_DISAGREE, (first, later), f"regions {first} and {later} are in one face")
+    return Fault(FaultKind.REGIONS_DISAGREE, (first, later), f"regions #{first} and #{later} are in one face")
 
 
 def regions_of(pslg: PSLG, neighbors: IntArray, fixed: BoolArray, place: IntArray, seeds: IntArray) -> IntArray:
