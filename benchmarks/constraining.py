@@ -75,6 +75,8 @@ def _polygon(graph: Graph) -> Any:
 
     if not graph.closed:
         raise NotImplementedError("polygons only")
+    if np.array_equal(graph.segments[:, 1], np.roll(graph.segments[:, 0], -1)):  # one ring
+        return shapely.Polygon(graph.points)
     faces = shapely.polygonize(list(shapely.linestrings(graph.points[graph.segments])))
     return shapely.MultiPolygon(list(shapely.get_parts(faces)))
 
