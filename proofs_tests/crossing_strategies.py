@@ -9,7 +9,7 @@ from proofs_tests.mesh_strategies import point_sets
 
 from exactkernel.types import FloatArray
 
-__all__ = ["Drawing", "bundle", "drawings", "near_bundles"]
+__all__ = ["SEVEN", "Drawing", "bundle", "drawings", "near_bundles"]
 
 Drawing = tuple[list[Point], list[tuple[int, int]]]
 
@@ -69,6 +69,16 @@ def of_few_ulps(draw: st.DrawFn) -> Drawing:
 def drawings() -> st.SearchStrategy[Drawing]:
     """Points and segments of every one of the families."""
     return st.one_of(on_grids(), near_bundles(), of_few_ulps(), point_sets(8).flatmap(joined))
+
+
+#: Number 7 of the corpus: three segments, 0-1, 2-3, 4-5, nearly through one point.
+SEVEN = np.array(
+    [
+        (-0.6616708319446925, 0.043023726210314694), (1.3283374986113592, 0.242690559503971),
+        (-0.029024421143340307, -0.7891819431100835), (0.6956910878100069, 1.074896228824369),
+        (0.9996093546131575, -0.6028480693195775), (-0.3329426879464908, 0.888562355033863),
+    ]
+)  # fmt: skip
 
 
 def bundle(seed: int) -> tuple[FloatArray, list[tuple[int, int]]]:

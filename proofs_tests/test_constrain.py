@@ -14,13 +14,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from proofs_tests import constrained_oracle, oracles
 from proofs_tests.constrained_oracle import Edge, Segment, edges_of
+from proofs_tests.crossing_strategies import SEVEN, bundle
 from proofs_tests.enumeration import CIRCLE_OF_EIGHT, COUNTS, Triangulation, canonical_triangles, grid, triangulations
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.oracles import RationalPoint, Triangle
 from proofs_tests.pslg_strategies import Graph, graphs
 
 from exactkernel.jit import COMPILED
-from exactmesh import PSLG, ExactMeshError, constrained_delaunay, delaunay
+from exactmesh import PSLG, ExactMeshError, constrained_delaunay, delaunay, verify
 from exactmesh.errors import CollinearPointsError, CrossingError
 
 Rows = tuple[Triangle, ...]
@@ -259,6 +260,30 @@ class TestEveryOrder:
         assert ours(places, [(a, b) for a, b in mesh.edges.tolist()]) == canonical_triangles(mesh.triangles.tolist())
         plain = delaunay(graph.points)
         assert ours(places, [(a, b) for a, b in plain.edges.tolist()]) == canonical_triangles(plain.triangles.tolist())
+
+
+@pytest.mark.obligation("M5", "the corpus: near-concurrent segments, split, are constrained Delaunay, and admissible")
+class TestCorpus:
+    """Number 7 of the corpus of other meshers' failures, and its 150 bundles: of those Triangle fails on 129."""
+
+    def verified(self, pslg: PSLG) -> bool:
+        mesh = constrained_delaunay(pslg, carve=False, crossings="split")
+        assert mesh.arrangement is not None
+        chains = [mesh.chain(i) for i in range(len(pslg.segments))]
+        assert all((chain[1:, 0] == chain[:-1, 1]).all() for chain in chains)
+        return verify(mesh.points, mesh.triangles, segments=mesh.segments).ok
+
+    def test_number_seven(self) -> None:
+        assert self.verified(PSLG(SEVEN, [(0, 1), (2, 3), (4, 5)]))
+
+    def test_bundles(self) -> None:
+        for seed in range(150):
+            assert self.verified(PSLG(*bundle(seed))), seed
+
+    def test_control_a_flipped_edge_is_found(self) -> None:
+        mesh = constrained_delaunay(PSLG(*bundle(0)), carve=False, crossings="split")
+        assert verify(mesh.points, mesh.triangles, segments=mesh.segments).ok
+        assert not verify(mesh.points, mesh.triangles, segments=[(int(mesh.hull[0]), int(mesh.hull[2]))]).ok
 
 
 @pytest.mark.obligation("M5", "segments that cross are refused, whatever the order, and only those")

@@ -10,7 +10,7 @@ import pytest
 from gmpy2 import mpq
 from hypothesis import given
 from proofs_tests import crossing_oracle as oracle
-from proofs_tests.crossing_strategies import Drawing, bundle, drawings, near_bundles
+from proofs_tests.crossing_strategies import SEVEN, Drawing, bundle, drawings, near_bundles
 from proofs_tests.oracles import RationalPoint, rationals
 
 from exactkernel.types import FloatArray
@@ -24,14 +24,6 @@ from exactmesh.crossings.noding import drawing_of
 from exactmesh.crossings.snapping import grid_of, snapped
 from exactmesh.errors import DegenerateError, NonFiniteError, ShapeError, TooManyCrossingsError, TopologyError
 
-#: Corpus number 7: three segments through nearly one point.
-SEVEN = np.array(
-    [
-        (-0.6616708319446925, 0.043023726210314694), (1.3283374986113592, 0.242690559503971),
-        (-0.029024421143340307, -0.7891819431100835), (0.6956910878100069, 1.074896228824369),
-        (0.9996093546131575, -0.6028480693195775), (-0.3329426879464908, 0.888562355033863),
-    ]
-)  # fmt: skip
 #: The bundles of the corpus that noding does not make planar, so that they are snapped.
 SNAPPED_BUNDLES = {26}
 

@@ -158,6 +158,22 @@ class TestOneGraph:
             assert [vertices[0, 0], vertices[-1, 1]] == mesh.representative[ends].tolist()
 
 
+@pytest.mark.obligation("M5", "all counties as one graph, borders shared, crossings split, by either rule")
+class TestAllCounties:
+    """All counties as one graph of rings (compiled; else those of Virginia), triangulated and verified."""
+
+    @pytest.mark.parametrize("rule", Carve)
+    def test_verified(self, rule: Carve) -> None:
+        pslg = PSLG.from_rings([ring for name, rings in COUNTIES.items() if COMPILED or name == "va" for ring in rings])
+        mesh = constrained_delaunay(pslg, carve=rule, crossings="split")
+        assert mesh.domain is not None
+        assert mesh.domain.rule is rule
+        report = verify(mesh.points, mesh.triangles, domain=mesh.domain)
+        assert report.ok, report.violations
+        lost = verify(mesh.points, mesh.triangles[1:], domain=mesh.domain)  # the control
+        assert not lost.ok
+
+
 @pytest.mark.obligation("ARR6", "the counties: borders that cross are noded, and all but a few points stay bit for bit")
 class TestArrangedCounties:
     """All counties as one graph of rings (compiled; else those of Virginia): borders that nearly coincide creep when
