@@ -259,7 +259,7 @@ class TestTheFaultIsNamed:
     def test_a_faulty_graph(self, tmp_path: Path) -> None:
         text = LAKE.replace("2 2 3 0", "2 2 2 0").replace("1 1.5 4", "1 0 4")
         path = put(tmp_path, text)
-        with pytest.raises(PSLGError, match=re.escape(f"{path}: segment 1 begins and ends in point 1")) as caught:
+        with pytest.raises(PSLGError, match=re.escape(f"{path}: segment 2 begins and ends in point 2")) as caught:
             read_pslg(path)
         assert caught.value.path == str(path)
         assert [(fault.kind, fault.indices) for fault in caught.value.faults] == [
