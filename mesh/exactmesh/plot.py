@@ -142,7 +142,7 @@ def _draw_triangles(axes: "Axes", drawn: FloatArray, triangles: IntArray, smalle
 def _draw_lines(axes: "Axes", lines: FloatArray, width: float, color: str) -> None:
     from matplotlib.collections import LineCollection
 
-    axes.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]
+    axes.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]  # as above
 
 
 def _write_caption(figure: "Figure", points: FloatArray, angles: FloatArray, title: str | None) -> None:
