@@ -19,9 +19,13 @@ import numpy.typing as npt
 from gmpy2 import mpq, sign
 from numba import types as numba_types
 
+from exactkernel.anglebound import corner_sign
 from exactkernel.jit import COMPILED, jit
 
 __all__ = [
+    "ANGLE",
+    "AREA",
+    "LENGTH",
     "RationalPoint",
     "diametral_from_doubles",
     "diametral_rational",
@@ -30,6 +34,8 @@ __all__ = [
     "orient2d_from_doubles",
     "orient2d_rational",
     "raise_if_interrupted",
+    "shape_from_doubles",
+    "shape_rational",
 ]
 
 RationalPoint: TypeAlias = "tuple[mpq, mpq]"
@@ -61,6 +67,25 @@ def incircle_rational(a: RationalPoint, b: RationalPoint, c: RationalPoint, d: R
 def diametral_rational(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> int:
     """Return the exact sign of diametral: +1 if p lies inside the circle with diameter ab."""
     return int(sign((p[0] - a[0]) * (b[0] - p[0]) + (p[1] - a[1]) * (b[1] - p[1])))
+
+
+#: The questions of :func:`shape_rational`.
+ANGLE, AREA, LENGTH = 0.0, 1.0, 2.0
+
+
+def shape_rational(question: float, bound: mpq, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> int:
+    """Return the exact sign of a measure of the counterclockwise triangle abc against a bound.
+
+    ``ANGLE``: the bound in degrees minus the angle at a. ``AREA``: the area minus the bound. ``LENGTH``: the length of
+    ab minus the bound, which is not negative.
+    """
+    ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
+    if question == LENGTH:
+        return int(sign(ux * ux + uy * uy - bound * bound))
+    cross = ux * vy - uy * vx
+    if question == AREA:
+        return int(sign(cross - 2 * bound))
+    return corner_sign(cross, ux * vx + uy * vy, bound)
 
 
 _pending: list[BaseException] = []
@@ -118,9 +143,14 @@ def _incircle(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, 
     return incircle_rational((mpq(ax), mpq(ay)), (mpq(bx), mpq(by)), (mpq(cx), mpq(cy)), (mpq(dx), mpq(dy)))
 
 
+def _shape(question: float, bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    return shape_rational(question, mpq(bound), (mpq(ax), mpq(ay)), (mpq(bx), mpq(by)), (mpq(cx), mpq(cy)))
+
+
 _ask_orient2d = _register("exactmesh_orient2d_rational", _orient2d, 6)
 _ask_diametral = _register("exactmesh_diametral_rational", _diametral, 6)
 _ask_incircle = _register("exactmesh_incircle_rational", _incircle, 8)
+_ask_shape = _register("exactmesh_shape_rational", _shape, 8)
 
 
 @jit
@@ -174,6 +204,20 @@ def incircle_from_doubles(
     while True:
         number = _next_number(mailbox, attempt)
         _ask_incircle(mailbox.ctypes.data, number, attempt, ax, ay, bx, by, cx, cy, dx, dy)
+        if _is_answered(mailbox, number):
+            return int(mailbox[1] & 3) - 2
+        attempt += 1
+
+
+@jit
+def shape_from_doubles(
+    mailbox: Mailbox, question: float, bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
+) -> int:
+    """Return :func:`shape_rational` of any finite doubles, from compiled code."""
+    attempt = 0
+    while True:
+        number = _next_number(mailbox, attempt)
+        _ask_shape(mailbox.ctypes.data, number, attempt, question, bound, ax, ay, bx, by, cx, cy)
         if _is_answered(mailbox, number):
             return int(mailbox[1] & 3) - 2
         attempt += 1
