@@ -10,12 +10,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
+from exactkernel.errors import (
+    BoundError,
+    CoordinateError,
+    DegenerateError,
+    ExactMeshError,
+    NonFiniteError,
+    ShapeError,
+)
 
 if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "BoundError",
     "ChoiceError",
     "CollinearPointsError",
     "ConstrainedVertexError",
