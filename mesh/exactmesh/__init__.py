@@ -25,6 +25,7 @@ from exactmesh.errors import (
     GeometryError,
     InadmissibleError,
     NonFiniteError,
+    OptionError,
     PSLGError,
     SeedError,
     ShapeError,
@@ -38,6 +39,7 @@ from exactmesh.lawson import flip, is_flippable, is_locally_delaunay, lawson
 from exactmesh.pslg import PSLG, Carve
 from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
 from exactmesh.quality import Statistics
+from exactmesh.refinement import Reason, Refinement, Steiner, SteinerKind, refine
 from exactmesh.triangulation import Triangulation, Work
 from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
 
@@ -64,12 +66,15 @@ __all__ = [
     "InadmissibleError",
     "Meeting",
     "NonFiniteError",
+    "OptionError",
     "Orientation",
     "PSLGError",
     "Primal",
     "Property",
     "QuadEdge",
     "QuarterEdge",
+    "Reason",
+    "Refinement",
     "Report",
     "Rounding",
     "SeedError",
@@ -78,6 +83,8 @@ __all__ = [
     "Sign",
     "Stage",
     "Statistics",
+    "Steiner",
+    "SteinerKind",
     "TooFewPointsError",
     "TooManyCrossingsError",
     "TooManyPointsError",
@@ -97,5 +104,6 @@ __all__ = [
     "is_flippable",
     "is_locally_delaunay",
     "lawson",
+    "refine",
     "verify",
 ]

@@ -37,6 +37,7 @@ __all__ = [
     "GeometryError",
     "InadmissibleError",
     "NonFiniteError",
+    "OptionError",
     "PSLGError",
     "SeedError",
     "ShapeError",
@@ -49,6 +50,10 @@ __all__ = [
 
 class ChoiceError(ExactMeshError):
     """An argument that must be one of a few words is another."""
+
+
+class OptionError(ExactMeshError):
+    """An option is out of range, or of the wrong kind."""
 
 
 class TooFewPointsError(ExactMeshError):
