@@ -53,10 +53,10 @@ def wanted(case: Case) -> Fraction | None:
     return None
 
 
-def error_of(exact: Fraction, x: float, unit: float) -> Fraction:
-    """Return the error in ulps of the exact number, or in half units where that is more."""
-    ulp = Fraction(math.ulp(float(exact)))
-    return abs(exact - Fraction(x)) / max(ulp, Fraction(unit) / 2)
+def limit_of(exact: Fraction, unit: float) -> Fraction:
+    """Return what a rounded coordinate may err by: an ulp of the exact number, and half a unit where it is coarser."""
+    ulp, half = Fraction(math.ulp(float(exact))), Fraction(unit) / 2
+    return ulp + (half if 2 * half > ulp else 0)
 
 
 def faults(case: Case, split: Split) -> list[str]:
@@ -72,7 +72,7 @@ def faults(case: Case, split: Split) -> list[str]:
             wrong.append(f"coordinate {axis} leaves the box")
         if not is_double(Fraction(value), case.unit):
             wrong.append(f"coordinate {axis} is no multiple of the unit")
-        if error_of(target[axis], value, case.unit) > (0 if exact else 1):
+        if abs(target[axis] - Fraction(value)) > (0 if exact else limit_of(target[axis], case.unit)):
             wrong.append(f"coordinate {axis} is too far from where it should be")
     return wrong
 

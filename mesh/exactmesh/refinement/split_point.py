@@ -121,9 +121,9 @@ def split_point(
     and after t (or t itself); the smallest m wins, which leaves the most bits to split the halves exactly as well. A
     smaller ``slack`` keeps the point nearer.
 
-    Otherwise it is the point at t itself, each coordinate rounded with an error below one ulp (or half a unit, where
-    that is more), and ``exact`` is False. It lies in the closed box of a and b, a coordinate that a and b share is
-    kept. It may be a or b itself, when no other double is nearer: there is nothing to split then.
+    Otherwise it is the point at t itself, each coordinate rounded with an error below one ulp (and half a unit where
+    the unit is coarser), and ``exact`` is False. It lies in the closed box of a and b; a coordinate that a and b share
+    is kept. It may be a or b itself, when no other double is nearer: there is nothing to split then.
 
     Args:
         ax, ay, bx, by: a and b, different, multiples of ``unit``.
