@@ -17,8 +17,8 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import left_next, origin
 from exactmesh.plane import BoolArray
 from exactmesh.refinement.options import Size, Unsuitable, flags_of, sizes_of
-from exactmesh.refinement.queue import bucket_of, enqueue
 from exactmesh.refinement.placement import shortest_edge
+from exactmesh.refinement.queue import bucket_of, enqueue, forget
 from exactmesh.refinement.rules import ASKED, Rules
 from exactmesh.refinement.sheet import EDGES, OUTSIDE, Sheet
 from exactmesh.triangulation import Triangulation
@@ -117,11 +117,15 @@ def collect_fresh(s: Sheet, first: int, halves: IntArray, corners: FloatArray) -
 
 @jit
 def enqueue_all(s: Sheet, rules: Rules, halves: IntArray) -> None:
-    """Queue the triangles on the left of the half-edges; none of them is in the queue."""
+    """Queue the triangles on the left of the half-edges."""
     for half in halves:
-        _, squared = shortest_edge(s, 2 * half)
-        s.why[half] = ASKED
-        s.reason[half] = 0
+        shortest, squared = shortest_edge(s, 2 * half)
+        e, faults = shortest, ASKED
+        for _ in range(3):
+            faults |= s.why[e >> 1]
+            forget(s, e >> 1)
+            e = left_next(s.ring, e)
+        s.why[half] = faults
         enqueue(s, half, bucket_of(rules.longest, squared))
 
 

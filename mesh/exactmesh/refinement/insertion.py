@@ -50,10 +50,8 @@ def seek(s: Sheet, e: int, p: int) -> tuple[int, int]:
             if side_f == 0:
                 return (g, 2) if side_g == 0 else (f, 1)
             return (g, 1) if side_g == 0 else (f, 0)
-        if side_f < 0 and side_g < 0:
-            c = f if orient(s, a, p, dest(org, f)) >= 0 else g
-        else:
-            c = f if side_f < 0 else g
+        leaves_left = orient(s, a, p, dest(org, f)) >= 0 if side_g < 0 else True
+        c = f if side_f < 0 and leaves_left else g
     return c, 4
 
 
@@ -105,7 +103,7 @@ def divide_edge(s: Sheet, e: int, p: int) -> int:
 
 @jit_inline
 def join_apex(s: Sheet, into: int, out: int, after: int, new: int, zone: int) -> None:
-    """Cut the four-sided face into -> out -> after -> ... in two by the edge new, from the vertex between to the apex."""
+    """Cut the four-sided face into -> out -> after -> ... in two by an edge, from the vertex between to the apex."""
     ring, org = s.ring, s.org
     last = left_next(ring, after)
     org[new >> 1], org[(new ^ 2) >> 1] = org[out >> 1], org[last >> 1]

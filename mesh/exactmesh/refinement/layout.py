@@ -19,6 +19,8 @@ from exactmesh.refinement.queue import BUCKETS, clear_queue
 from exactmesh.refinement.sheet import EDGES, FIXED, OUTSIDE, TOP, VERTICES, WAITING, Sheet
 from exactmesh.triangulation import Triangulation
 
+_TINIEST = 5e-324  # the smallest double: no restriction
+
 __all__ = ["Layout", "grown", "laid_out"]
 
 A = TypeVar("A", bound=np.generic)
@@ -30,7 +32,7 @@ class Layout(NamedTuple):
     Attributes:
         sheet: its coordinates are those of the points times 2^exponent.
         exponent: see there.
-        unit: new coordinates of the sheet are to be multiples of it, or 0.
+        unit: new coordinates of the sheet are to be multiples of it.
         rows: int32 (r, 2), the fixed edges: the segments of the triangulation, then the other edges of its boundary.
         lines: int32 (r, 2), the ends of the straight line that each is part of: see ``lines_of``.
         sharp: bool (r, 2), whether another line leaves those ends within 60 degrees.
@@ -46,7 +48,7 @@ class Layout(NamedTuple):
 
 @jit
 def follow_lines(rows: IntArray, at: IntArray, smooth: BoolArray, lines: IntArray) -> None:
-    """Write the ends of each row's line: from both its ends on through smooth vertices; ``at`` (n, 2) are their rows."""
+    """Write the ends of each row's line, from both its ends on through smooth vertices, whose rows ``at`` (n, 2) has."""
     for first in range(len(rows)):
         if lines[first, 0] >= 0:
             continue
@@ -103,7 +105,7 @@ def mark_sharp(
         ax, ay = xy[2 * a] - xy[2 * v], xy[2 * a + 1] - xy[2 * v + 1]
         bx, by = xy[2 * b] - xy[2 * v], xy[2 * b + 1] - xy[2 * v + 1]
         dot, cross = ax * bx + ay * by, ax * by - ay * bx
-        if f != e and dot > 0.0 and 0.0 <= cross and 4.0 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by):
+        if f != e and dot > 0.0 and cross >= 0.0 and 4.0 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by):
             for row in (segment[e >> 2], segment[f >> 2]):
                 for end in range(2):
                     if lines[row, end] == v:
@@ -136,7 +138,7 @@ def laid_out(mesh: Triangulation, zone: IntArray) -> Layout:
     maximum, unit = bits_of(mesh.points)
     exponent = exponent_into_window(maximum, unit)
     scaled = np.ldexp(mesh.points, exponent)
-    k, finest = make_context(scaled), 0.0
+    k, finest = make_context(scaled), _TINIEST
     if k.incircle_bound < np.inf and np.abs(scaled).max() <= MAX_COORDINATE_DEGREE_4:
         finest = max(MIN_UNIT_DEGREE_4, float(np.ldexp(1.0, max(exponent - 1074, -1074))))
         k = rebounded(k, float(np.abs(scaled).max()), finest)

@@ -77,13 +77,10 @@ def checked_options(
         raise OptionError(f"min_edge={min_edge!r}; it must be a length")
     budget = math.inf
     if max_steiner is not None:
-        whole = isinstance(max_steiner, (int, np.integer)) and not isinstance(max_steiner, bool)
-        if not whole or max_steiner < 0:
+        budget = _number("max_steiner", max_steiner)
+        if budget < 0.0 or budget != math.floor(budget):
             raise OptionError(f"max_steiner={max_steiner!r}; it must be a number of points")
-        budget = float(max_steiner)
-    return Options(
-        angle, _areas(max_area), size, unsuitable, bool(conforming), Steiner(steiner), budget, edge
-    )  # fmt: skip
+    return Options(angle, _areas(max_area), size, unsuitable, bool(conforming), Steiner(steiner), budget, edge)
 
 
 def _number(name: str, value: object) -> float:

@@ -15,14 +15,14 @@ from exactmesh.refinement.displacement import displacement_squared
 from exactmesh.refinement.layout import Layout
 from exactmesh.refinement.result import Refinement
 from exactmesh.refinement.rules import Reason
-from exactmesh.refinement.sheet import EDGES, FLIPS, OUTSIDE, VERTICES, Sheet
+from exactmesh.refinement.sheet import EDGES, FLIPS, OUTSIDE, VERTICES, ByteArray, Sheet
 from exactmesh.triangulation import Triangulation, work_of
 
 __all__ = ["refinement_of"]
 
 
-def _parts(s: Sheet, layout: Layout, mesh: Triangulation, points: FloatArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Return the constrained edges, int32 (p, 2), sorted by row and along it, their rows, and their edge numbers."""
+def _parts(s: Sheet, layout: Layout, mesh: Triangulation, points: FloatArray) -> tuple[IntArray, IntArray]:
+    """Return the constrained edges, int32 (p, 2), sorted by row and along it, and their rows."""
     segment = s.segment[: int(s.counts[EDGES])]
     edges = np.flatnonzero((segment >= 0) & (segment < len(mesh.segments)))
     row = segment[edges]
@@ -34,7 +34,7 @@ def _parts(s: Sheet, layout: Layout, mesh: Triangulation, points: FloatArray) ->
     ends[backward] = ends[backward][:, ::-1]
     least = np.minimum(first, last)
     order = np.lexsort((least[:, 1], least[:, 0], row))
-    return ends[order], row[order], edges[order]
+    return ends[order], row[order]
 
 
 def _incidence(mesh: Triangulation, row: IntArray) -> IntArray:
@@ -108,7 +108,7 @@ def _zones_of_triangles(s: Sheet, slot: EdgeArray, count: int) -> IntArray:
     return zone
 
 
-def _unrefined(s: Sheet, slot: EdgeArray) -> tuple[IntArray, IntArray]:
+def _unrefined(s: Sheet, slot: EdgeArray) -> tuple[IntArray, ByteArray]:
     """Return the triangles that were given up or still wait, ascending, and the reasons."""
     reason = s.reason[: len(slot)].copy()
     reason[s.why[: len(slot)] != 0] = Reason.BUDGET
@@ -118,7 +118,9 @@ def _unrefined(s: Sheet, slot: EdgeArray) -> tuple[IntArray, IntArray]:
     return triangle[order].astype(np.int32), reason[halves[order]]
 
 
-def refinement_of(s: Sheet, layout: Layout, mesh: Triangulation, regions: IntArray, attributes: FloatArray) -> Refinement:
+def refinement_of(
+    s: Sheet, layout: Layout, mesh: Triangulation, regions: IntArray, attributes: FloatArray
+) -> Refinement:
     """Return the result; ``regions`` and ``attributes`` (z, a) are those of the triangles in each zone. O(n log n)."""
     old, count, edges = len(mesh.points), int(s.counts[VERTICES]), int(s.counts[EDGES])
     points = np.empty((count, 2))
@@ -127,7 +129,7 @@ def refinement_of(s: Sheet, layout: Layout, mesh: Triangulation, regions: IntArr
     slot = np.where(s.zone[: 2 * edges] == OUTSIDE, OUTER, -1).astype(np.int32)
     same = np.arange(count, dtype=np.int32)
     triangles, neighbors = triangles_of(s.ring[: 4 * edges], s.org[: 2 * edges], slot, same)
-    segments, row, _ = _parts(s, layout, mesh, points)
+    segments, row = _parts(s, layout, mesh, points)
     moved = _moved(s, layout, points, old)
     zone = _zones_of_triangles(s, slot, len(triangles))
     unrefined, reasons = _unrefined(s, slot)

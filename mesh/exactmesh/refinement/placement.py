@@ -65,6 +65,8 @@ def place_centre(s: Sheet, rules: Rules, e: int, p: int, offset: float) -> None:
     area = left - right
     if area < _CLEAR * (abs(left) + abs(right)):
         area = careful_area(xy[2 * b], xy[2 * b + 1], xy[2 * c], xy[2 * c + 1], ax, ay)
+    if area == 0.0:  # an underflow
+        area = math.nan
     bb, cc = bx * bx + by * by, cx * cx + cy * cy
     ux, uy = (cy * bb - by * cc) / (2.0 * area), (bx * cc - cx * bb) / (2.0 * area)
     if offset > 0.0:

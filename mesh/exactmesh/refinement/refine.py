@@ -5,10 +5,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.angle import angle_bound
 from exactkernel.context import chunk_size, thread_context
 from exactkernel.errors import ShapeError
 from exactkernel.rational import raise_if_interrupted
-from exactkernel.angle import angle_bound
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.constrain import Crossings, constrained_delaunay
 from exactmesh.crossings.memory import room_for
@@ -40,15 +40,15 @@ def _zones(mesh: Triangulation) -> tuple[IntArray, IntArray, FloatArray, FloatAr
     """
     columns = np.concatenate([mesh.triangle_regions[:, None].astype(np.float64), mesh.triangle_attributes], axis=1)
     if (columns == columns[:1]).all():
-        first, zone = np.zeros(1, dtype=np.int64), np.zeros(len(columns), dtype=np.int32)
-    else:
-        _, first, zone = np.unique(columns, axis=0, return_index=True, return_inverse=True)
+        columns = columns[:1]  # without sorting, for the most common case
+    _, first, zone = np.unique(columns, axis=0, return_index=True, return_inverse=True)
+    zone = np.broadcast_to(zone.reshape(-1), len(mesh.triangles)) if len(columns) == 1 else zone.reshape(-1)
     region = mesh.triangle_regions[first]
     areas = np.full(len(first), math.inf)
     if mesh.pslg is not None and len(mesh.pslg.regions):
         areas = np.where(region >= 0, mesh.pslg.regions[region, 3], math.inf)
     areas = np.where(areas > 0.0, areas, math.inf)
-    return zone.reshape(-1).astype(np.int32), region, mesh.triangle_attributes[first], areas
+    return zone.astype(np.int32), region, mesh.triangle_attributes[first], areas
 
 
 def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:

@@ -12,9 +12,9 @@ from exactkernel.diametral import diametral_adaptive
 from exactkernel.jit import jit_inline
 from exactkernel.measure import area_above_adaptive
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.edgealgebra import dest, left_next, origin
+from exactmesh.edgealgebra import dest, origin
 from exactmesh.plane import BoolArray
-from exactmesh.refinement.sheet import ByteArray, Sheet, distance_squared
+from exactmesh.refinement.sheet import Sheet, distance_squared
 
 __all__ = ["ANGLE", "ASKED", "SIZE", "Reason", "Rules", "SteinerKind", "faults_of", "is_encroached"]
 
@@ -47,7 +47,7 @@ class SteinerKind(IntEnum):
     YIELDED = 2
     """It divides a segment that stood in the way of a point for a bad triangle; that triangle's parent is its own."""
     INTERIOR = 3
-    """It was put inside the domain, for a bad triangle; its parent is the younger end of the triangle's shortest edge."""
+    """It was put inside the domain for a bad triangle; its parent is the younger end of that one's shortest edge."""
 
 
 class Rules(NamedTuple):
@@ -115,7 +115,7 @@ def is_encroached(s: Sheet, rules: Rules, e: int, p: int) -> bool:
 
 @jit_inline
 def joins_sharp_segments(s: Sheet, rules: Rules, a: int, b: int) -> bool:
-    """Tell whether ab joins two segments with a common end at equal distances from it: Miller, Pav and Walkington's rule.
+    """Tell whether ab joins two segments with a common end at equal distances from it. Reference [Miller 2003].
 
     Then the angle across from it is that of the segments, or smaller than the input's in any other mesh.
     """

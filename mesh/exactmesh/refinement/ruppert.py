@@ -18,7 +18,7 @@ from exactmesh.refinement.insertion import (
     undo_flips,
 )
 from exactmesh.refinement.placement import is_finite, place_centre, place_centroid, shortest_edge
-from exactmesh.refinement.queue import BUCKETS, bucket_of, enqueue, forget, next_half
+from exactmesh.refinement.queue import bucket_of, enqueue, forget, next_half
 from exactmesh.refinement.rules import (
     ANGLE,
     Reason,
@@ -130,8 +130,10 @@ def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int) -> tuple[float, 
     """
     for end in range(2):
         v = rules.ends[row, end]
-        if (v == a or v == b) and rules.sharp[row, end]:
+        if v in (a, b) and rules.sharp[row, end]:
             length = math.sqrt(distance_squared(s.xy, a, b))
+            if length == 0.0:
+                break
             _, exponent = math.frexp(length / 1.5)
             part = math.ldexp(0.5, exponent) / length  # in (1/3, 2/3]
             return (part if v == a else 1.0 - part), 1e-9
@@ -272,11 +274,10 @@ def insert_for(
 @jit
 def has_room(s: Sheet) -> bool:
     """Tell whether one more step fits into the arrays: two vertices, eight edges, and what waits."""
-    return (
-        s.counts[VERTICES] + 2 <= len(s.line)
-        and s.counts[EDGES] + 8 <= len(s.segment)
-        and 4 * (s.counts[WAITING] + s.counts[FIXED] + 8) <= len(s.waiting)
-    )
+    vertices = s.counts[VERTICES] + 2 <= len(s.line)
+    edges = s.counts[EDGES] + 8 <= len(s.segment)
+    waiting = 4 * (s.counts[WAITING] + s.counts[FIXED] + 8) <= len(s.waiting)
+    return bool(vertices and edges and waiting)
 
 
 @jit

@@ -14,7 +14,7 @@ from exactkernel.context import Context
 from exactkernel.incircle import incircle_perturbed_adaptive
 from exactkernel.jit import jit_inline
 from exactkernel.orient2d import orient2d_adaptive
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import EdgeArray
 
 __all__ = [
