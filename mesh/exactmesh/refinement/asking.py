@@ -83,36 +83,30 @@ def area_question(mesh: Triangulation, max_area: FloatArray) -> Question:
 
 
 @jit
-def count_fresh(s: Sheet, first: int) -> int:
-    """Return how many triangles have a vertex that is not older than first."""
+def collect_fresh(s: Sheet, halves: IntArray) -> int:
+    """Write a half-edge of each triangle that is not known yet; then they are. Return how many."""
     count = 0
     for half in range(2 * s.counts[EDGES]):
-        if s.zone[half] != OUTSIDE and is_fresh(s, 2 * half, first):
-            count += 1
+        if s.zone[half] == OUTSIDE or s.known[half] != 0:
+            continue
+        halves[count] = half
+        count += 1
+        e = 2 * half
+        for _ in range(3):
+            s.known[e >> 1] = 1
+            e = left_next(s.ring, e)
     return count
 
 
 @jit
-def is_fresh(s: Sheet, e: int, first: int) -> bool:
-    """Tell whether the triangle on the left of e has a vertex that is not older than first, and e is its first edge."""
-    f = left_next(s.ring, e)
-    g = left_next(s.ring, f)
-    return e < f and e < g and max(origin(s.org, e), origin(s.org, f), origin(s.org, g)) >= first
-
-
-@jit
-def collect_fresh(s: Sheet, first: int, halves: IntArray, corners: FloatArray) -> None:
-    """Write the half-edges and corners of those triangles."""
-    count = 0
-    for half in range(2 * s.counts[EDGES]):
-        if s.zone[half] != OUTSIDE and is_fresh(s, 2 * half, first):
-            halves[count] = half
-            e = 2 * half
-            for i in range(3):
-                v = origin(s.org, e)
-                corners[count, i, 0], corners[count, i, 1] = s.xy[2 * v], s.xy[2 * v + 1]
-                e = left_next(s.ring, e)
-            count += 1
+def write_corners(s: Sheet, halves: IntArray, corners: FloatArray) -> None:
+    """Write the corners (k, 3, 2) of the triangles on the left of the half-edges."""
+    for t in range(len(halves)):
+        e = 2 * int(halves[t])
+        for i in range(3):
+            v = origin(s.org, e)
+            corners[t, i, 0], corners[t, i, 1] = s.xy[2 * v], s.xy[2 * v + 1]
+            e = left_next(s.ring, e)
 
 
 @jit
@@ -124,16 +118,19 @@ def enqueue_all(s: Sheet, rules: Rules, halves: IntArray) -> None:
         for _ in range(3):
             faults |= s.why[e >> 1]
             forget(s, e >> 1)
+            s.known[e >> 1] = 1
             e = left_next(s.ring, e)
         s.why[half] = faults
         enqueue(s, half, bucket_of(rules.longest, squared))
 
 
-def ask(s: Sheet, rules: Rules, questions: list[Question], first: int, exponent: int) -> bool:
-    """Ask about all triangles with a vertex not older than first; tell whether any was objected to."""
-    count = int(count_fresh(s, first))
-    halves, corners = np.empty(count, dtype=np.int32), np.empty((count, 3, 2))
-    collect_fresh(s, first, halves, corners)
+def ask(s: Sheet, rules: Rules, questions: list[Question], exponent: int) -> bool:
+    """Ask about all triangles that are new; tell whether any was objected to."""
+    halves = np.empty(2 * int(s.counts[EDGES]) // 3 + 1, dtype=np.int32)
+    halves = halves[: int(collect_fresh(s, halves))]
+    count = len(halves)
+    corners = np.empty((count, 3, 2))
+    write_corners(s, halves, corners)
     corners = np.ldexp(corners, -exponent)
     corners.setflags(write=False)
     objected = np.zeros(count, dtype=np.bool_)

@@ -158,13 +158,14 @@ def laid_out(mesh: Triangulation, zone: IntArray) -> Layout:
     np.sqrt(radius, out=radius)
     nothing = np.empty(0, dtype=np.int32)
     small = np.zeros(edges, dtype=np.int8)
-    counts = np.zeros(6, dtype=np.int64)
+    counts = np.zeros(7, dtype=np.int64)
     counts[VERTICES], counts[EDGES], counts[FIXED], counts[TOP] = vertices, edges, len(rows), -1
     sheet = Sheet(
         k, xy, ring, org, of_half, segment, hard=small, line=line, parent=np.full(vertices, -1, dtype=np.int32),
         radius=radius, root=radius.copy(), kind=np.zeros(vertices, dtype=np.int8), waiting=nothing,
         before=np.empty(BUCKETS, dtype=np.int32), after=np.empty(BUCKETS, dtype=np.int32),
         why=np.zeros(2 * edges, dtype=np.int8), reason=np.zeros(2 * edges, dtype=np.int8),
+        known=np.zeros(2 * edges, dtype=np.int8),
         flipped=nothing, hit=nothing, counts=counts,
     )  # fmt: skip
     clear_queue(sheet)
@@ -199,6 +200,7 @@ def grown(s: Sheet, vertices: int) -> Sheet:
         after=_stretched(s.after, BUCKETS + 2 * edges),
         why=_stretched(s.why, 2 * edges),
         reason=_stretched(s.reason, 2 * edges),
+        known=_stretched(s.known, 2 * edges),
         flipped=np.empty(edges, dtype=np.int32),
         hit=np.empty(edges, dtype=np.int32),
     )

@@ -15,7 +15,7 @@ from exactmesh.refinement.displacement import displacement_squared
 from exactmesh.refinement.layout import Layout
 from exactmesh.refinement.result import Refinement
 from exactmesh.refinement.rules import Reason
-from exactmesh.refinement.sheet import EDGES, FLIPS, OUTSIDE, VERTICES, ByteArray, Sheet
+from exactmesh.refinement.sheet import DEAD, EDGES, FLIPS, OUTSIDE, VERTICES, ByteArray, Sheet
 from exactmesh.triangulation import Triangulation, work_of
 
 __all__ = ["refinement_of"]
@@ -118,10 +118,33 @@ def _unrefined(s: Sheet, slot: EdgeArray) -> tuple[IntArray, ByteArray]:
     return triangle[order].astype(np.int32), reason[halves[order]]
 
 
+def without_dead(s: Sheet) -> Sheet:
+    """Return the sheet without the vertices that were removed; of those that they caused, the parent is -1."""
+    count, edges = int(s.counts[VERTICES]), int(s.counts[EDGES])
+    if s.counts[DEAD] == 0:
+        return s
+    alive = np.flatnonzero(s.kind[:count] >= 0)
+    number = np.full(count + 1, -1, dtype=np.int32)
+    number[alive] = np.arange(len(alive), dtype=np.int32)
+    counts = s.counts.copy()
+    counts[VERTICES], counts[DEAD] = len(alive), 0
+    return s._replace(
+        xy=s.xy[: 2 * count].reshape(-1, 2)[alive].reshape(-1),
+        org=number[s.org[: 2 * edges]],
+        line=s.line[alive],
+        parent=number[s.parent[alive]],
+        radius=s.radius[alive],
+        root=s.root[alive],
+        kind=s.kind[alive],
+        counts=counts,
+    )
+
+
 def refinement_of(
     s: Sheet, layout: Layout, mesh: Triangulation, regions: IntArray, attributes: FloatArray
 ) -> Refinement:
     """Return the result; ``regions`` and ``attributes`` (z, a) are those of the triangles in each zone. O(n log n)."""
+    s = without_dead(s)
     old, count, edges = len(mesh.points), int(s.counts[VERTICES]), int(s.counts[EDGES])
     points = np.empty((count, 2))
     points[:old] = mesh.points

@@ -12,7 +12,9 @@ from exactmesh.refinement.sheet import TOP, Sheet
 
 __all__ = ["BUCKETS", "bucket_of", "clear_queue", "enqueue", "forget", "next_half"]
 
-BUCKETS = 256
+BUCKETS = 512
+
+_HALFWAY = 0.7071067811865476
 
 
 @jit
@@ -24,9 +26,10 @@ def clear_queue(s: Sheet) -> None:
 
 @jit_inline
 def bucket_of(unit: float, squared: float) -> int:
-    """Return the bucket of a squared length, in steps of a factor of 2; ``unit`` is about the largest there is."""
-    _, exponent = math.frexp(squared / unit)
-    return min(max(4 - exponent, 0), BUCKETS - 1)
+    """Return the bucket of a squared length, in steps of a factor of about 1.4; ``unit`` is about the largest there is."""
+    mantissa, exponent = math.frexp(squared / unit)
+    step = 2 * exponent + (1 if mantissa > _HALFWAY else 0)
+    return min(max(8 - step, 0), BUCKETS - 1)
 
 
 @jit_inline
@@ -51,6 +54,7 @@ def forget(s: Sheet, half: int) -> None:
         s.before[right] = left
         s.why[half] = 0
     s.reason[half] = 0
+    s.known[half] = 0
 
 
 @jit_inline

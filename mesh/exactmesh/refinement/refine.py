@@ -119,12 +119,10 @@ def refined(mesh: Triangulation, options: Options, progress: Progress | None) ->
     rules = _rules(layout, options, areas)
     s = grown(layout.sheet, 2 * len(mesh.points) + 64)
     _forbid(s, options.steiner)
-    first = 0
     judge_all(s, rules, 0, int(s.counts[EDGES]))
     while True:
         s, state = _exhaust(s, rules, progress)
-        fresh, first = first, int(s.counts[VERTICES])
-        if not questions or not ask(s, rules, questions, fresh, layout.exponent) or state == BUDGET:
+        if not questions or not ask(s, rules, questions, layout.exponent) or state == BUDGET:
             break
     return refinement_of(s, layout, mesh, regions, attributes)
 

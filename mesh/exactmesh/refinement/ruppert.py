@@ -7,6 +7,7 @@ divided instead. Reference [Ruppert 1995], [Shewchuk 2002], [Miller 2003], [Ungo
 import math
 
 from exactkernel.jit import jit, jit_inline
+from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.refinement.insertion import (
     divide_edge,
@@ -19,6 +20,7 @@ from exactmesh.refinement.insertion import (
 )
 from exactmesh.refinement.placement import is_finite, place_centre, place_centroid, shortest_edge
 from exactmesh.refinement.queue import bucket_of, enqueue, forget, next_half
+from exactmesh.refinement.removal import remove_vertex
 from exactmesh.refinement.rules import (
     ANGLE,
     Reason,
@@ -28,8 +30,11 @@ from exactmesh.refinement.rules import (
     is_encroached,
     joins_sharp_segments,
 )
-from exactmesh.refinement.sheet import EDGES, FIXED, FLIPS, OUTSIDE, VERTICES, WAITING, Sheet, distance_squared, orient
+from exactmesh.refinement.sheet import DEAD, EDGES, FIXED, FLIPS, OUTSIDE, VERTICES, WAITING, Sheet, distance_squared, orient
 from exactmesh.refinement.split_point import split_point
+
+_WELL = 0.25  # of the squared width between two segments: the parts are not shorter
+_ON_CIRCLE = 1e-9  # how far from a common circle, in lengths of the edge, will do
 
 __all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "run"]
 
@@ -122,21 +127,46 @@ def settle(s: Sheet, first: int, p: int, parent: int, kind: int, root: float, li
 
 
 @jit_inline
-def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int) -> tuple[float, float]:
+def concentric(s: Sheet, a: int, b: int, centre: int, parent: int) -> float:
+    """Return where the circle round the centre through the parent divides ab, or 0.0 if that is not well inside."""
+    if s.kind[parent] == _INTERIOR or s.kind[parent] < 0 or parent == centre:
+        return 0.0
+    xy = s.xy
+    radius = math.sqrt(distance_squared(xy, centre, parent))
+    first, last = math.sqrt(distance_squared(xy, centre, a)), math.sqrt(distance_squared(xy, centre, b))
+    if first == last:
+        return 0.0
+    t = (radius - first) / (last - first)
+    if not 0.0 < t < 1.0:
+        return 0.0
+    dx, dy = xy[2 * b] - xy[2 * a], xy[2 * b + 1] - xy[2 * a + 1]
+    px, py = xy[2 * a] + t * dx - xy[2 * parent], xy[2 * a + 1] + t * dy - xy[2 * parent + 1]
+    shorter = min(t, 1.0 - t)
+    return t if shorter * shorter * (dx * dx + dy * dy) >= _WELL * (px * px + py * py) else 0.0
+
+
+@jit_inline
+def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int, parent: int) -> tuple[float, float]:
     """Return where to divide the edge ab of the constrained edge row, and how far from there will do.
 
-    Halfway; but at an end where segments meet sharply, at a power of two from there, so that these are divided on
-    common circles and do not encroach on one another for ever.
+    Halfway; but where segments meet sharply, they are divided on common circles round that end, so that they do not
+    encroach on one another for ever: on the circle of the parent if it divides the edge well, else, in the edge that
+    begins there, at a power of two.
     """
     for end in range(2):
         v = rules.ends[row, end]
-        if v in (a, b) and rules.sharp[row, end]:
+        if not rules.sharp[row, end]:
+            continue
+        t = concentric(s, a, b, v, parent)
+        if t > 0.0:
+            return t, _ON_CIRCLE
+        if v in (a, b):
             length = math.sqrt(distance_squared(s.xy, a, b))
             if length == 0.0:
                 break
             _, exponent = math.frexp(length / 1.5)
             part = math.ldexp(0.5, exponent) / length  # in (1/3, 2/3]
-            return (part if v == a else 1.0 - part), 1e-9
+            return (part if v == a else 1.0 - part), _ON_CIRCLE
     return 0.5, 0.125
 
 
@@ -149,13 +179,40 @@ def fits(s: Sheet, e: int, p: int) -> bool:
     return orient(s, a, p, c) > 0 and orient(s, p, b, c) > 0
 
 
+@jit_inline
+def clear_circle(s: Sheet, rules: Rules, e: int) -> None:
+    """Remove the vertices inside the domain that are next to the fixed edge e and in its diametral circle."""
+    while is_inside(s, e):
+        spoke = left_next(s.ring, left_next(s.ring, e))
+        apex = origin(s.org, spoke)
+        if s.kind[apex] != _INTERIOR or not is_in_circle(s.xy, origin(s.org, e), dest(s.org, e), apex):
+            return
+        edges, single = remove_vertex(s, spoke)
+        if edges < 0:
+            return
+        judge(s, rules, single)
+        for i in range(edges):
+            judge(s, rules, 4 * s.flipped[i])
+            judge(s, rules, 4 * s.flipped[i] ^ 2)
+
+
+@jit_inline
+def is_in_circle(xy: FloatArray, a: int, b: int, p: int) -> bool:
+    """Tell whether p is in the circle with the diameter ab, in plain floating point."""
+    across = (xy[2 * a] - xy[2 * p]) * (xy[2 * b] - xy[2 * p])
+    return bool(across + (xy[2 * a + 1] - xy[2 * p + 1]) * (xy[2 * b + 1] - xy[2 * p + 1]) < 0.0)
+
+
 @jit
 def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> None:
     """Divide a fixed edge, or mark it as hard."""
     xy, p = s.xy, int(s.counts[VERTICES])
     a, b = origin(s.org, e), dest(s.org, e)
     row = int(s.segment[e >> 2])
-    t, slack = parameter(s, rules, row, a, b)
+    t, slack = parameter(s, rules, row, a, b, parent)
+    if slack > _ON_CIRCLE:
+        clear_circle(s, rules, e)
+        clear_circle(s, rules, e ^ 2)
     x, y, _ = split_point(xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], t, slack, rules.unit)
     xy[2 * p], xy[2 * p + 1] = x, y
     if not (is_finite(xy, p) and fits(s, e, p) and fits(s, e ^ 2, p)):
@@ -287,7 +344,7 @@ def run(s: Sheet, rules: Rules, steps: int) -> int:
         if not has_room(s):
             return ROOM
         if s.counts[WAITING] > 0:
-            if s.counts[VERTICES] >= rules.max_vertices:
+            if s.counts[VERTICES] - s.counts[DEAD] >= rules.max_vertices:
                 return BUDGET
             s.counts[WAITING] -= 1
             i = 4 * s.counts[WAITING]
@@ -299,7 +356,7 @@ def run(s: Sheet, rules: Rules, steps: int) -> int:
         half = next_half(s)
         if half < 0:
             return DONE
-        if s.counts[VERTICES] >= rules.max_vertices:
+        if s.counts[VERTICES] - s.counts[DEAD] >= rules.max_vertices:
             return BUDGET
         refine_triangle(s, rules, half)
     return MORE

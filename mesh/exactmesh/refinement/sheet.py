@@ -18,6 +18,7 @@ from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import EdgeArray
 
 __all__ = [
+    "DEAD",
     "EDGES",
     "FIXED",
     "FLIPS",
@@ -37,8 +38,8 @@ ByteArray = npt.NDArray[np.int8]
 Counts = npt.NDArray[np.int64]
 
 #: Entries of ``Sheet.counts``: vertices, edges, fixed ones among them, those that wait to be divided, a bound of the
-#: buckets in use, flips.
-VERTICES, EDGES, FIXED, WAITING, TOP, FLIPS = range(6)
+#: buckets in use, flips, vertices that were removed.
+VERTICES, EDGES, FIXED, WAITING, TOP, FLIPS, DEAD = range(7)
 
 #: The zone of a face outside of the domain.
 OUTSIDE = -1
@@ -58,10 +59,11 @@ class Sheet(NamedTuple):
         parent, radius: of each vertex, the one that caused it, and the distance to the nearest that it saw when it
             came; -1 and the shortest edge for vertices of the input.
         root: of each vertex, the radius of the first of its ancestors that had to be as close as it was.
-        kind: of each vertex, its :class:`SteinerKind`, or 0 for the input.
+        kind: of each vertex, its :class:`SteinerKind`, or 0 for the input, or -1 if it was removed.
         waiting: rows (edge, destination, parent, cause) of fixed edges to be divided.
         before, after, why: the queue of triangles, see ``queue``.
         reason: of each half-edge, the :class:`Reason` for which the triangle on its left was given up, or 0.
+        known: of each half-edge, whether the user's functions have been asked about the triangle on its left.
         flipped, hit: scratch, one entry for each edge.
         counts: int64.
     """
@@ -83,6 +85,7 @@ class Sheet(NamedTuple):
     after: EdgeArray
     why: ByteArray
     reason: ByteArray
+    known: ByteArray
     flipped: EdgeArray
     hit: EdgeArray
     counts: Counts
