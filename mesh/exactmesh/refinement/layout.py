@@ -105,7 +105,7 @@ def mark_sharp(
         ax, ay = xy[2 * a] - xy[2 * v], xy[2 * a + 1] - xy[2 * v + 1]
         bx, by = xy[2 * b] - xy[2 * v], xy[2 * b + 1] - xy[2 * v + 1]
         dot, cross = ax * bx + ay * by, ax * by - ay * bx
-        if f != e and dot > 0.0 and cross >= 0.0 and 4.0 * dot * dot > (ax * ax + ay * ay) * (bx * bx + by * by):
+        if f != e and cross >= 0.0 and dot > 0.0:
             for row in (segment[e >> 2], segment[f >> 2]):
                 for end in range(2):
                     if lines[row, end] == v:

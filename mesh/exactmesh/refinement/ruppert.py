@@ -203,6 +203,12 @@ def is_in_circle(xy: FloatArray, a: int, b: int, p: int) -> bool:
     return bool(across + (xy[2 * a + 1] - xy[2 * p + 1]) * (xy[2 * b + 1] - xy[2 * p + 1]) < 0.0)
 
 
+@jit_inline
+def first_of_link(s: Sheet, e: int, new: int) -> int:
+    """Return the first edge of the link of the vertex between the fixed edges e, which ends there, and new."""
+    return left_next(s.ring, new) if is_inside(s, new) else left_next(s.ring, e ^ 2)
+
+
 @jit
 def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> None:
     """Divide a fixed edge, or mark it as hard."""
@@ -222,8 +228,8 @@ def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> N
         s.hard[e >> 2] = _MINIMUM_EDGE
         return
     new = divide_edge(s, e, p)
-    first = left_next(s.ring, new) if is_inside(s, new) else left_next(s.ring, e ^ 2)
-    s.counts[FLIPS] += legalize(s, first, p)
+    s.counts[FLIPS] += legalize(s, first_of_link(s, e, new), p)
+    first = first_of_link(s, e, new)
     inherits = cause == _YIELDED or (cause == _ENCROACHED and s.kind[parent] != 0)
     settle(s, first, p, parent, cause & 3, s.root[parent] if inherits else 0.0, row)
     accept(s, rules, first, p)
