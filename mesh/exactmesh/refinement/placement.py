@@ -5,16 +5,20 @@ The off-centre makes the shortest edge and the new point a triangle that is just
 
 import math
 
+import numpy as np
+
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import two_diff
 from exactkernel.jit import jit, jit_inline
 from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.refinement.rules import Rules
-from exactmesh.refinement.sheet import Sheet
+from exactmesh.refinement.sheet import Sheet, distance_squared
 
 __all__ = ["place_centre", "shortest_edge"]
 
+_ROW = 0.8660254037844386  # the height of an equilateral triangle of edge 1
+_SPARSE = 1.5625  # squared: how far away the nearest vertex is, in edges of the lattice, where p moves to it
 _CLEAR = 1e-6  # of the permanent: an area above that has ten digits
 
 
@@ -78,6 +82,24 @@ def place_centre(s: Sheet, rules: Rules, e: int, p: int, offset: float) -> None:
             ux, uy = vx, vy
     xy[2 * p] = to_unit(ax + ux, rules.unit)
     xy[2 * p + 1] = to_unit(ay + uy, rules.unit)
+
+
+@jit_inline
+def move_to_lattice(s: Sheet, rules: Rules, e: int, p: int) -> None:
+    """Move p, the circumcentre of a triangle that is too large, to the nearest point of the lattice of its zone.
+
+    The lattice is one of equilateral triangles that are just small enough, so where all points are from it, nothing
+    is left to do. It is within 0.7 of its own edge from anywhere; p moves if all vertices are much farther away.
+    """
+    xy, edge = s.xy, rules.lattice[s.zone[e >> 1]]
+    if not distance_squared(xy, p, origin(s.org, e)) > _SPARSE * edge * edge:
+        return
+    x, y = (xy[2 * p] - rules.origin_x) / edge, (xy[2 * p + 1] - rules.origin_y) / (edge * _ROW)
+    row = np.floor(y + 0.5)
+    shift = 0.5 * (row - 2.0 * np.floor(0.5 * row))
+    column = np.floor(x - shift + 0.5) + shift
+    xy[2 * p] = to_unit(rules.origin_x + column * edge, rules.unit)
+    xy[2 * p + 1] = to_unit(rules.origin_y + row * edge * _ROW, rules.unit)
 
 
 @jit_inline

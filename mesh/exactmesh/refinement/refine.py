@@ -30,6 +30,7 @@ __all__ = ["refine"]
 _CHUNK = 1 << 15  # steps between two looks at Ctrl-C and the progress bar, where predicates are fast
 _BYTES_PER_VERTEX = 400  # three edges, and what is made of them in the end
 _OFFSET = 0.475  # of the exact off-centre's 0.5: slack, so that its triangle is surely good
+_FILLED = 0.995  # of the largest area: the triangles of a lattice
 _SHRINK = 1.0 / 64.0  # how short edges may become, in radii of what caused them, before an angle is given up
 
 
@@ -68,6 +69,9 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         gabriel=options.conforming,
         areas=areas,
         has_area=bool((areas < math.inf).any()),
+        lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * areas),
+        origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
+        origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
         min_edge=math.ldexp(options.min_edge, layout.exponent) ** 2,
         shrink=_SHRINK * _SHRINK,
         unit=layout.unit,

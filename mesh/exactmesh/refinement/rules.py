@@ -61,6 +61,8 @@ class Rules(NamedTuple):
         gabriel: whether segments must be Gabriel, that is, whether the whole diametral circle counts.
         areas: the largest area in each zone.
         has_area: whether there is any.
+        lattice: the edges of the equilateral triangles to fill each zone with, infinite where there is no area bound.
+        origin_x, origin_y: a point of the lattices.
         min_edge: squared.
         shrink: how much shorter, squared, an edge may be than its root where angles are concerned.
         unit: new coordinates are multiples of it.
@@ -77,6 +79,9 @@ class Rules(NamedTuple):
     gabriel: bool
     areas: FloatArray
     has_area: bool
+    lattice: FloatArray
+    origin_x: float
+    origin_y: float
     min_edge: float
     shrink: float
     unit: float

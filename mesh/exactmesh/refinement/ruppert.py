@@ -18,11 +18,12 @@ from exactmesh.refinement.insertion import (
     take_out,
     undo_flips,
 )
-from exactmesh.refinement.placement import is_finite, place_centre, place_centroid, shortest_edge
+from exactmesh.refinement.placement import is_finite, move_to_lattice, place_centre, place_centroid, shortest_edge
 from exactmesh.refinement.queue import bucket_of, enqueue, forget, next_half
 from exactmesh.refinement.removal import remove_vertex
 from exactmesh.refinement.rules import (
     ANGLE,
+    SIZE,
     Reason,
     Rules,
     SteinerKind,
@@ -30,10 +31,21 @@ from exactmesh.refinement.rules import (
     is_encroached,
     joins_sharp_segments,
 )
-from exactmesh.refinement.sheet import DEAD, EDGES, FIXED, FLIPS, OUTSIDE, VERTICES, WAITING, Sheet, distance_squared, orient
+from exactmesh.refinement.sheet import (
+    DEAD,
+    EDGES,
+    FIXED,
+    FLIPS,
+    OUTSIDE,
+    VERTICES,
+    WAITING,
+    Sheet,
+    distance_squared,
+    orient,
+)
 from exactmesh.refinement.split_point import split_point
 
-_WELL = 0.25  # of the squared width between two segments: the parts are not shorter
+_WELL = 4.0  # squared: the parts of an edge are to be twice as long as the parent is away
 _ON_CIRCLE = 1e-9  # how far from a common circle, in lengths of the edge, will do
 
 __all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "run"]
@@ -150,17 +162,18 @@ def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int, parent: int) -> 
     """Return where to divide the edge ab of the constrained edge row, and how far from there will do.
 
     Halfway; but where segments meet sharply, they are divided on common circles round that end, so that they do not
-    encroach on one another for ever: on the circle of the parent if it divides the edge well, else, in the edge that
-    begins there, at a power of two.
+    encroach on one another for ever: the edge that begins there at a power of two, others on the circle of the parent
+    if that divides them well.
     """
     for end in range(2):
         v = rules.ends[row, end]
         if not rules.sharp[row, end]:
             continue
-        t = concentric(s, a, b, v, parent)
-        if t > 0.0:
-            return t, _ON_CIRCLE
-        if v in (a, b):
+        if v not in (a, b):
+            t = concentric(s, a, b, v, parent)
+            if t > 0.0:
+                return t, _ON_CIRCLE
+        else:
             length = math.sqrt(distance_squared(s.xy, a, b))
             if length == 0.0:
                 break
@@ -280,6 +293,8 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
         give_up(s, half, _TERMINATION)
         return
     place_centre(s, rules, e, p, rules.offset if faults & ANGLE else 0.0)
+    if faults == SIZE:
+        move_to_lattice(s, rules, e, p)
     if not is_finite(s.xy, p):
         give_up(s, half, _PRECISION)
         return
@@ -323,15 +338,13 @@ def insert_for(
     if too_near:
         give_up(s, half, _MINIMUM_EDGE)
         return
-    reason, soft = 0, 0
+    reason = 0
     for i in range(hits):
-        if s.hard[s.hit[i] >> 2] == 0:
-            soft += 1
+        reason = int(s.hard[s.hit[i] >> 2])
+        if reason == 0:  # one at a time: the next may not be in the way any more
             await_split(s, int(s.hit[i]), parent, _YIELDED if root > 0.0 else _YIELDED_TO_SIZE)
-        else:
-            reason = int(s.hard[s.hit[i] >> 2])
-    if soft == 0:
-        give_up(s, half, reason)
+            return
+    give_up(s, half, reason)
 
 
 @jit
