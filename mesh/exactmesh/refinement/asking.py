@@ -121,7 +121,7 @@ def enqueue_all(s: Sheet, rules: Rules, halves: IntArray) -> None:
             s.known[e >> 1] = 1
             e = left_next(s.ring, e)
         s.why[half] = faults
-        enqueue(s, half, bucket_of(rules.longest, squared))
+        enqueue(s, half, bucket_of(rules.longest, squared, False))
 
 
 def ask(s: Sheet, rules: Rules, questions: list[Question], exponent: int) -> bool:

@@ -5,8 +5,6 @@ The off-centre makes the shortest edge and the new point a triangle that is just
 
 import math
 
-import numpy as np
-
 from exactkernel.doubledouble import dd_add, dd_multiply
 from exactkernel.expansions import two_diff
 from exactkernel.jit import jit, jit_inline
@@ -18,7 +16,8 @@ from exactmesh.refinement.sheet import Sheet, distance_squared
 __all__ = ["place_centre", "shortest_edge"]
 
 _ROW = 0.8660254037844386  # the height of an equilateral triangle of edge 1
-_SPARSE = 1.5625  # squared: how far away the nearest vertex is, in edges of the lattice, where p moves to it
+_APART = 0.55  # how far all vertices are from a point of the lattice that is taken, in its edges
+_FAR = 1e9  # in edges of the lattice: beyond, its points would be far from where they belong
 _CLEAR = 1e-6  # of the permanent: an area above that has ten digits
 
 
@@ -85,21 +84,35 @@ def place_centre(s: Sheet, rules: Rules, e: int, p: int, offset: float) -> None:
 
 
 @jit_inline
+def nearest_on_lattice(x: float, y: float) -> tuple[float, float, float]:
+    """Return the lattice point nearest to (x, y), by its coordinates in edges, and its squared distance."""
+    best_x, best_y, nearest = 0.0, 0.0, math.inf
+    lower = math.floor(y / _ROW)
+    for i in range(2):
+        row = lower + i
+        shift = 0.5 * (row - 2.0 * math.floor(0.5 * row))
+        u, v = math.floor(x - shift + 0.5) + shift, row * _ROW
+        squared = (u - x) * (u - x) + (v - y) * (v - y)
+        if squared < nearest:
+            best_x, best_y, nearest = u, v, squared
+    return best_x, best_y, nearest
+
+
+@jit_inline
 def move_to_lattice(s: Sheet, rules: Rules, e: int, p: int) -> None:
     """Move p, the circumcentre of a triangle that is too large, to the nearest point of the lattice of its zone.
 
     The lattice is one of equilateral triangles that are just small enough, so where all points are from it, nothing
-    is left to do. It is within 0.7 of its own edge from anywhere; p moves if all vertices are much farther away.
+    is left to do. p stays where it is if a vertex might be too close to its new place.
     """
     xy, edge = s.xy, rules.lattice[s.zone[e >> 1]]
-    if not distance_squared(xy, p, origin(s.org, e)) > _SPARSE * edge * edge:
+    x, y = (xy[2 * p] - rules.origin_x) / edge, (xy[2 * p + 1] - rules.origin_y) / edge
+    if not abs(x) + abs(y) < _FAR:
         return
-    x, y = (xy[2 * p] - rules.origin_x) / edge, (xy[2 * p + 1] - rules.origin_y) / (edge * _ROW)
-    row = np.floor(y + 0.5)
-    shift = 0.5 * (row - 2.0 * np.floor(0.5 * row))
-    column = np.floor(x - shift + 0.5) + shift
-    xy[2 * p] = to_unit(rules.origin_x + column * edge, rules.unit)
-    xy[2 * p + 1] = to_unit(rules.origin_y + row * edge * _ROW, rules.unit)
+    u, v, squared = nearest_on_lattice(x, y)
+    if math.sqrt(distance_squared(xy, p, origin(s.org, e))) / edge - math.sqrt(squared) > _APART:
+        xy[2 * p] = to_unit(rules.origin_x + u * edge, rules.unit)
+        xy[2 * p + 1] = to_unit(rules.origin_y + v * edge, rules.unit)
 
 
 @jit_inline

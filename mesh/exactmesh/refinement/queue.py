@@ -1,4 +1,4 @@
-"""The triangles that wait to be refined: those with the shortest edge first.
+"""The triangles that wait to be refined.
 
 Each bucket is a ring of half-edges, doubly linked: node BUCKETS + h stands for half-edge h, node b for bucket b itself.
 A triangle that is destroyed leaves the queue at once, so that there is nothing stale in it and always room. Reference
@@ -25,11 +25,15 @@ def clear_queue(s: Sheet) -> None:
 
 
 @jit_inline
-def bucket_of(unit: float, squared: float) -> int:
-    """Return the bucket of a squared length, in steps of a factor of about 1.4; ``unit`` is about the largest there is."""
+def bucket_of(unit: float, squared: float, is_skinny: bool) -> int:
+    """Return the bucket for a squared length of the shortest edge; ``unit`` is about the largest there is.
+
+    Triangles that are too large come first, large ones before small ones, so that the lattices grow undisturbed; then
+    the skinny ones, small ones before large ones. Buckets are steps of a factor of about 1.4.
+    """
     mantissa, exponent = math.frexp(squared / unit)
-    step = 2 * exponent + (1 if mantissa > _HALFWAY else 0)
-    return min(max(8 - step, 0), BUCKETS - 1)
+    step = min(max(8 - 2 * exponent - (1 if mantissa > _HALFWAY else 0), 0), BUCKETS // 2 - 1)
+    return step if is_skinny else BUCKETS - 1 - step
 
 
 @jit_inline

@@ -55,6 +55,7 @@ def _zones(mesh: Triangulation) -> tuple[IntArray, IntArray, FloatArray, FloatAr
 def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
     """Return the rules in the coordinates of the sheet."""
     cosine = math.cos(math.radians(options.min_angle))
+    # a point inside of an equilateral triangle makes angles of 30 degrees at most
     if isinstance(options.max_area, float):
         areas = np.minimum(areas, options.max_area)
     areas = np.ldexp(areas, 2 * layout.exponent)
@@ -69,7 +70,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         gabriel=options.conforming,
         areas=areas,
         has_area=bool((areas < math.inf).any()),
-        lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * areas),
+        lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * (areas if options.min_angle <= 30.0 else math.inf * areas)),
         origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
         origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
         min_edge=math.ldexp(options.min_edge, layout.exponent) ** 2,

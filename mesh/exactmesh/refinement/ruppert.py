@@ -85,7 +85,7 @@ def file_fault(s: Sheet, rules: Rules, e: int, faults: int) -> None:
         s.reason[e >> 1] = _SMALL_INPUT_ANGLE
         return
     s.why[e >> 1] = faults
-    enqueue(s, e >> 1, bucket_of(rules.longest, squared))
+    enqueue(s, e >> 1, bucket_of(rules.longest, squared, faults == ANGLE))
 
 
 @jit_inline
