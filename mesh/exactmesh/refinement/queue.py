@@ -40,11 +40,11 @@ def bucket_of(unit: float, squared: float, is_skinny: bool) -> int:
 def enqueue(s: Sheet, half: int, bucket: int) -> None:
     """Put a half-edge that is in no bucket at the end of one."""
     node = BUCKETS + half
-    last = s.before[bucket]
-    s.after[last] = node
-    s.before[node] = last
-    s.after[node] = bucket
-    s.before[bucket] = node
+    first = s.after[bucket]
+    s.before[first] = node
+    s.after[node] = first
+    s.before[node] = bucket
+    s.after[bucket] = node
     s.counts[TOP] = max(s.counts[TOP], bucket)
 
 
