@@ -51,7 +51,13 @@ def _is_inside(p: RationalPoint, q: RationalPoint, solid: Sequence[Sequence[Rati
     return reached == 1 and any(_interval(p, p, corners) is not None for corners in solid)
 
 
-def _sees(p: RationalPoint, a: RationalPoint, b: RationalPoint, corners: set[RationalPoint], solid: Sequence[Sequence[RationalPoint]]) -> bool:  # fmt: skip
+def _sees(
+    p: RationalPoint,
+    a: RationalPoint,
+    b: RationalPoint,
+    corners: set[RationalPoint],
+    solid: Sequence[Sequence[RationalPoint]],
+) -> bool:
     """Tell whether some x strictly between a and b is joined to p within the union.
 
     What p sees of ab changes only where a line from p through a corner meets it.
@@ -66,7 +72,9 @@ def _sees(p: RationalPoint, a: RationalPoint, b: RationalPoint, corners: set[Rat
     return any(_is_inside((a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])), p, solid) for t in tried)
 
 
-def encroachers(points: Sequence[RationalPoint], triangles: Sequence[Triangle], segments: Iterable[Pair]) -> set[tuple[Pair, int]]:  # fmt: skip
+def encroachers(
+    points: Sequence[RationalPoint], triangles: Sequence[Triangle], segments: Iterable[Pair]
+) -> set[tuple[Pair, int]]:
     """Return the edges that should be Gabriel with the corners that are inside their circles and visible."""
     turned = [oracles.counterclockwise(points, t) for t in triangles]
     solid = [[points[v] for v in t] for t in turned]

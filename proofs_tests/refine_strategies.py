@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from hypothesis import assume
 from hypothesis import strategies as st
 from proofs_tests.constrained_oracle import Segment
 from proofs_tests.kernel_strategies import Point
@@ -25,7 +26,8 @@ def wedges(draw: st.DrawFn) -> PSLG:
     """Two segments that meet at a small angle, down to a thousandth of a degree, in a box or as a triangle."""
     degrees = draw(st.sampled_from([0.001, 0.1, 1.0, 5.0, 15.0, 29.0, 45.0, 59.0]))
     turned, ratio = draw(st.floats(0.0, 6.3)), draw(st.floats(0.3, 1.0))
-    ends = [(6 * r * math.cos(turned + a), 6 * r * math.sin(turned + a)) for a, r in ((0.0, 1.0), (math.radians(degrees), ratio))]  # fmt: skip
+    sides = ((turned, 6.0), (turned + math.radians(degrees), 6.0 * ratio))
+    ends = [(side * math.cos(angle), side * math.sin(angle)) for angle, side in sides]
     if draw(st.booleans()):
         return PSLG([(0.0, 0.0), *ends], ring(0, 3))
     return PSLG([*BOX, (0.0, 0.0), *ends], [*FRAME, (4, 5), (4, 6)])
@@ -54,7 +56,7 @@ def near_misses(draw: st.DrawFn) -> PSLG:
     if kind == "parallel":
         return PSLG([*BOX, (-4.0, 0.0), (4.0, 0.0), (x, gap), (5.0, gap)], [*FRAME, (4, 5), (6, 7)])
     if kind == "slit":
-        return PSLG([*BOX, (-8.0, 0.0), (x, gap)], [*FRAME, (4, 5), (3, 4), (4, 0)][:3] + [(3, 4), (4, 0), (4, 5)])
+        return PSLG([*BOX, (-8.0, 0.0), (x, gap)], [*FRAME[:3], (3, 4), (4, 0), (4, 5)])
     if kind == "step":
         return PSLG([*BOX, (-4.0, 0.0), (0.0, 0.0), (0.0, gap), (4.0, gap)], [*FRAME, (4, 5), (5, 6), (6, 7)])
     hole = [(-3.0, 8.0 - gap), (3.0, 8.0 - gap), (0.0, 4.0)]
@@ -98,7 +100,9 @@ def framed(draw: st.DrawFn) -> PSLG:
     xy = np.array(graph.points)
     low, high = xy.min(axis=0), xy.max(axis=0)
     reach = max(float((high - low).max()), float(np.abs(xy).max()) * 2.0**-40)
+    assume(reach < 2.0**1000)
     (x0, y0), (x1, y1) = (low - reach).tolist(), (high + reach).tolist()
+    assume(x0 < low[0] and y0 < low[1] and x1 > high[0] and y1 > high[1])
     n = len(graph.points)
     points = [*graph.points, (x0, y0), (x1, y0), (x1, y1), (x0, y1)]
     return PSLG(points, [*graph.segments, *ring(n, 4)])

@@ -15,6 +15,7 @@ from proofs_tests.test_verify import CONFIGURATIONS, all_sets
 
 from exactkernel import BoundError, ShapeError
 from exactmesh import PSLG, constrained_delaunay, delaunay
+from exactmesh.errors import CollinearPointsError
 from exactmesh.verify import (
     CONFORMING_TRIANGULATION,
     ChoiceError,
@@ -75,8 +76,8 @@ def random_mesh(random: Random) -> tuple[Points, list[Triangle], list[Pair]]:
         if all(not shape_meets(exact[a], exact[b], *line) for line in lines):
             wanted.append((a, b))
     try:
-        mesh = constrained_delaunay(PSLG(points, wanted), carve="none")
-    except ValueError:  # collinear
+        mesh = constrained_delaunay(PSLG(points, wanted), carve=False)
+    except CollinearPointsError:
         return random_mesh(random)
     triangles = [(int(a), int(b), int(c)) for a, b, c in mesh.triangles]
     if random.random() < 0.5:

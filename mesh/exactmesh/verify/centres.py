@@ -7,7 +7,6 @@ or above an odd number of boundary edges.
 """
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
@@ -139,8 +138,10 @@ def check_centres(
     return _located(mesh, boundary, obtuse[~found].tolist())
 
 
-def _located(mesh: Mesh, boundary: Boundary, rows: Iterable[int]) -> Finding:
+def _located(mesh: Mesh, boundary: Boundary, rows: list[int]) -> Finding:
     """Locate circumcentres exactly."""
+    if not rows:
+        return Finding(Verdict.HOLDS)
     outline = Outline(mesh.points, boundary)
     outside, violations = 0, []
     for t in rows:
@@ -194,7 +195,7 @@ class Outline:
         self.left, self.right = np.where(swap[:, None], b, a), np.where(swap[:, None], a, b)
         self.low = np.minimum(a[:, 1], b[:, 1])
         self.high = np.maximum(a[:, 1], b[:, 1])
-        self.cuts = np.unique(np.quantile(points[boundary.origin, 0], np.linspace(0.0, 1.0, int(len(a) ** 0.5) + 2)))
+        self.cuts = np.unique(np.sort(a[:, 0])[:: int(len(a) ** 0.5) + 1])
         first, last = (np.searchsorted(self.cuts, ends[:, 0], side="right") for ends in (self.left, self.right))
         counts = last - first + 1
         edges = np.repeat(np.arange(len(a)), counts)
