@@ -97,6 +97,7 @@ def _is_domain(graph: Graph) -> bool:
 def framed(draw: st.DrawFn) -> PSLG:
     """Any small graph, within a frame of its own."""
     graph = draw(st.one_of(graphs(), grid_graphs(), ring_sets()))
+    assume(len(graph.points) > 0)
     xy = np.array(graph.points)
     low, high = xy.min(axis=0), xy.max(axis=0)
     reach = max(float((high - low).max()), float(np.abs(xy).max()) * 2.0**-40)

@@ -66,7 +66,7 @@ def _angle(degrees: float | None, name: str) -> AngleBound | None:
         return None
     try:
         return angle_bound(degrees)
-    except (TypeError, ValueError):
+    except BoundError:
         raise BoundError(f"{name} is a number of degrees between 0 and 180, not {shown(degrees)}") from None
 
 
