@@ -125,6 +125,13 @@ def verify(
         str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
     ] = None,
     orientation: Annotated[str, typer.Option(metavar="ccw|any", help="How triangles may be listed.")] = "ccw",
+    min_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is smaller.")] = None,
+    max_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is larger.")] = None,
+    max_area: Annotated[float | None, typer.Option(metavar="AREA", help="Claim that no triangle is larger.")] = None,
+    gabriel: Annotated[
+        bool,
+        typer.Option("--gabriel", help="Claim that no vertex is inside the circle of a boundary edge or segment."),
+    ] = False,
     json: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
     ] = None,
@@ -137,16 +144,17 @@ def verify(
     from exactmesh.progress import working
     from exactmesh.verify.boundary import walk_convex
     from exactmesh.verify.chains import walk_chains
-    from exactmesh.verify_file import checked_against, checked_alone
+    from exactmesh.verify_file import Shapes, checked_against, checked_alone
 
     content = _triangles_of(mesh)
     graph = None if domain is None else _domain_of(domain, carve)
+    bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel)
     needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
     with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
         if graph is None:
-            report, note = checked_alone(content, mesh, claim or None, orientation)
+            report, note = checked_alone(content, mesh, claim or None, orientation, bounds)
         else:
-            report, note = checked_against(*graph, domain or "", content, claim or None, orientation), ""
+            report, note = checked_against(*graph, domain or "", content, claim or None, orientation, bounds), ""
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))

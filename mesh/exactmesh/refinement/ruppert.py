@@ -312,9 +312,7 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
 
 
 @jit_inline
-def insert_for(
-    s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, parent: int, root: float
-) -> None:
+def insert_for(s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, parent: int, root: float) -> None:
     """Insert p into the triangle on the left of e, or onto e (zeros = 1), for the bad triangle of the half-edge."""
     if zeros == 0:
         new, on = divide_face(s, e, p), -1
