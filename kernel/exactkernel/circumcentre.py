@@ -28,7 +28,7 @@ from exactkernel.incircle import lift_double_double, safe_degree_4
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray
 
-__all__ = ["circumcentre_in_pairs", "nearest_circumcentre"]
+__all__ = ["circumcentre_in_pairs", "nearest_circumcentre", "quotient_offset"]
 
 #: A relative error of the denominator up to which first-order error propagation, times _SLACK, covers the quotient.
 _SMALL = 2.0**-10
@@ -37,10 +37,10 @@ _SLACK = 1.125
 
 
 @jit
-def _offset(
+def quotient_offset(
     a: float, n: float, n_tail: float, n_error: float, det: float, det_tail: float, det_error: float
 ) -> tuple[float, float, float]:
-    """Return (high, low, error bound) of a + n / det."""
+    """Return (high, low, error bound) of a + n / det, given bounds of the errors of the pairs n and det."""
     high = n / det
     m, m_tail = dd_multiply(det, det_tail, high, 0.0)
     q, q_tail = fast_two_sum(high, ((n - m) + (n_tail - m_tail)) / det)
@@ -75,8 +75,8 @@ def circumcentre_in_pairs(
     vv, vv_tail = lift_double_double(vx, vx_tail, vy, vy_tail)
     nx, nx_tail, nx_error = dd_cross(vy, vy_tail, uu, uu_tail, uy, uy_tail, vv, vv_tail)
     ny, ny_tail, ny_error = dd_cross(ux, ux_tail, vv, vv_tail, vx, vx_tail, uu, uu_tail)
-    x, x_tail, x_error = _offset(ax, nx, nx_tail, nx_error, 2.0 * det, 2.0 * det_tail, 2.0 * det_error)
-    y, y_tail, y_error = _offset(ay, ny, ny_tail, ny_error, 2.0 * det, 2.0 * det_tail, 2.0 * det_error)
+    x, x_tail, x_error = quotient_offset(ax, nx, nx_tail, nx_error, 2.0 * det, 2.0 * det_tail, 2.0 * det_error)
+    y, y_tail, y_error = quotient_offset(ay, ny, ny_tail, ny_error, 2.0 * det, 2.0 * det_tail, 2.0 * det_error)
     return x, x_tail, x_error, y, y_tail, y_error
 
 
@@ -178,7 +178,7 @@ def _decided(
 def nearest_circumcentre(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 ) -> tuple[float, float, bool]:
-    """Return the doubles nearest to the circumcentre of a, b, c, and whether that is certain; else ask the rationals."""
+    """Return the doubles nearest to the circumcentre of a, b, c, and whether they are: if not, ask the rationals."""
     x, x_tail, x_error, y, y_tail, y_error = circumcentre_in_pairs(k, ax, ay, bx, by, cx, cy)
     if not (x_error < math.inf and y_error < math.inf):
         return x, y, False

@@ -13,7 +13,9 @@ from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
     ChoiceError,
+    ClipError,
     CollinearPointsError,
+    ConflictingValuesError,
     ConstrainedVertexError,
     CoordinateError,
     CrossingError,
@@ -25,6 +27,8 @@ from exactmesh.errors import (
     GeometryError,
     InadmissibleError,
     NonFiniteError,
+    NotConformingError,
+    NotDelaunayError,
     PSLGError,
     SeedError,
     ShapeError,
@@ -40,6 +44,7 @@ from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
 from exactmesh.quality import Statistics
 from exactmesh.triangulation import Triangulation, Work
 from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
+from exactmesh.voronoi import Voronoi, voronoi
 
 __all__ = [
     "OUTSIDE",
@@ -47,7 +52,9 @@ __all__ = [
     "Arrangement",
     "Carve",
     "ChoiceError",
+    "ClipError",
     "CollinearPointsError",
+    "ConflictingValuesError",
     "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
@@ -64,6 +71,8 @@ __all__ = [
     "InadmissibleError",
     "Meeting",
     "NonFiniteError",
+    "NotConformingError",
+    "NotDelaunayError",
     "Orientation",
     "PSLGError",
     "Primal",
@@ -88,6 +97,7 @@ __all__ = [
     "VerificationError",
     "Vertex",
     "Violation",
+    "Voronoi",
     "Work",
     "arrange",
     "constrained_delaunay",
@@ -98,4 +108,5 @@ __all__ = [
     "is_locally_delaunay",
     "lawson",
     "verify",
+    "voronoi",
 ]

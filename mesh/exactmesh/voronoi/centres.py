@@ -121,7 +121,7 @@ def dual_edges(mesh: Triangulation) -> tuple[IntArray, FloatArray]:
     Edge i of ``mesh.edges`` is Voronoi edge i turned counterclockwise by a right angle.
 
     Returns:
-        int32 (k, 2), the triangle on the left of the edge and the one on its right, whose circumcentres the Voronoi edge
+        int32 (k, 2), the triangle on the left of the edge and the one on its right, whose centres the Voronoi edge
         connects; the second is -1 for a ray;
         float64 (k, 2), the direction of each ray, at a right angle away from its edge and as long (half as long where
         that would overflow); zeros for edges that are no rays.
@@ -134,7 +134,7 @@ def dual_edges(mesh: Triangulation) -> tuple[IntArray, FloatArray]:
     >>> mesh.edges.tolist()
     [[1, 2], [2, 0], [0, 1]]
     >>> [dual.tolist() for dual in dual_edges(mesh)]
-    [[[0, -1], [0, -1], [0, -1]], [[3.0, 2.0], [-3.0, -0.0], [0.0, -2.0]]]
+    [[[0, -1], [0, -1], [0, -1]], [[3.0, 2.0], [-3.0, 0.0], [0.0, -2.0]]]
     """
     own = np.arange(len(mesh.triangles), dtype=np.int32)[:, None] > mesh.neighbors
     left, right = np.nonzero(own)[0].astype(np.int32), mesh.neighbors[own]
