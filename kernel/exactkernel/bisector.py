@@ -7,8 +7,8 @@ their product 10 u, and second-order terms as incircle has them.
 
 import math
 
-from exactkernel.constants import DD_BOUND, INCIRCLE_BOUND, ORIENT2D_BOUND, UNIT_ROUNDOFF
 from exactkernel.circumcentre import quotient_offset
+from exactkernel.constants import DD_BOUND, INCIRCLE_BOUND, ORIENT2D_BOUND, UNIT_ROUNDOFF
 from exactkernel.context import Context
 from exactkernel.crossing import is_nearest_certain
 from exactkernel.doubledouble import dd_add, dd_multiply
@@ -32,7 +32,7 @@ _NEARER_BOUND = (4.0 + 32.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF
 
 @jit
 def nearer_adaptive(k: Context, px: float, py: float, qx: float, qy: float, x: float, y: float) -> int:
-    """Return the exact sign of |x - p|^2 - |x - q|^2: +1 if x is nearer to q than to p, -1 if to p, 0 on the bisector."""
+    """Return the exact sign of |x - p|^2 - |x - q|^2: +1 if x is nearer to q than to p."""
     if k.incircle_bound == math.inf:
         return nearer_from_doubles(k.mailbox, px, py, qx, qy, x, y)
     ux, uy, vx, vy = x - px, y - py, x - qx, y - qy

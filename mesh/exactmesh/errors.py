@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ChoiceError",
-    "CollinearPointsError",
     "ClipError",
+    "CollinearPointsError",
     "ConflictingValuesError",
     "ConstrainedVertexError",
     "CoordinateError",

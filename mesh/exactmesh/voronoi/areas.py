@@ -32,10 +32,10 @@ def _areas(points: FloatArray, vertices: FloatArray, offsets: IndexArray, cells:
 
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
 def areas_of_cells(points: FloatArray, vertices: FloatArray, offsets: IndexArray, cells: IntArray) -> FloatArray:
-    """Return the area of each cell, float64 (n,), read-only; infinite for those with an entry -1 or without any."""
+    """Return the area of each cell, float64 (n,); infinite for those with an entry -1 or
+    without any, and NaN where vertices beyond the doubles leave no answer."""
     areas = np.empty(len(points))
     _areas(points, vertices, offsets, cells, areas)
-    areas.setflags(write=False)
     return areas
 
 

@@ -9,9 +9,9 @@ import numpy.typing as npt
 from exactkernel.types import FloatArray
 from exactmesh.errors import ChoiceError
 from exactmesh.triangulation import Triangulation
+from exactmesh.voronoi.cells import Cells
 from exactmesh.voronoi.centres import centres_of, turned
 from exactmesh.voronoi.clipping import Diagram, clipped_to_window
-from exactmesh.voronoi.cells import Cells
 from exactmesh.voronoi.diagram import Voronoi
 from exactmesh.voronoi.domain import check_conforming, clipped_to_domain
 from exactmesh.voronoi.duality import Dual, dual_of

@@ -3,6 +3,7 @@ chains of their own vertices, the others are inside as a whole, or outside.
 """
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from exactmesh.voronoi.cells import Cells, CornerKind, KindArray, exact_crossing
 from exactmesh.voronoi.centres import nearest_doubles
 from exactmesh.voronoi.walk import COLUMNS, nearest_site, other_site, walk_around
 
-__all__ = ["Diagram", "clipped_to_window", "without_repetitions"]
+__all__ = ["Diagram", "clipped_to_window", "placed", "without_repetitions"]
 
 _VERTEX, _CROSSING, _WINDOW = int(CornerKind.VERTEX), int(CornerKind.CROSSING), int(CornerKind.WINDOW)
 _SMALLEST_SAFE = 2.0**-1021  # below it, scaling back may round a second time
@@ -139,8 +140,8 @@ def _visits(d: Diagram, k: Context, xy: FloatArray, window: FloatArray) -> Index
         if count >= 0:
             break
         room *= 4
-    visits = visits[:count][visits[:count, 7] == 0]
-    return visits[np.argsort(visits[:, 0], kind="stable")]
+    visits = visits[:count].compress(visits[:count, 7] == 0, axis=0)
+    return visits.take(np.argsort(visits[:, 0], kind="stable"), axis=0)
 
 
 def _crossing_places(
@@ -181,11 +182,11 @@ def clipped_to_window(d: Diagram, window: FloatArray) -> Cells:
         d.ridge_points, d.offsets, d.cells, d.cell_ridges, sides, sites, visits, bounds, kinds, sources, neighbors,
         crossings,
     )  # fmt: skip
-    kinds, sources, neighbors, crossings = kinds[:size], sources[:size], neighbors[:size], crossings[:count]
-    corners = np.empty((size, 2))
+    for array in (kinds, sources, neighbors):
+        array.resize(size, refcheck=False)  # no base is left to write to
+    crossings = crossings[:count]
     places = _crossing_places(d, k, xy, frame, exponent, window, crossings)
-    for kind, place in ((_VERTEX, d.vertices), (_CROSSING, places), (_WINDOW, window)):
-        corners[kinds == kind] = place[sources[kinds == kind]]
+    corners = placed(kinds, sources, {_VERTEX: d.vertices, _CROSSING: places, _WINDOW: window})
     nobody = np.empty((0, 2), dtype=np.int32)
     cells = Cells(
         d.points, sites, bounds, corners, neighbors, kinds, sources, window, d.vertex_sites, crossings, nobody
@@ -193,12 +194,47 @@ def clipped_to_window(d: Diagram, window: FloatArray) -> Cells:
     return without_repetitions(cells)
 
 
+@jit
+def _place(
+    kinds: KindArray, sources: IntArray, begins: IndexArray, places: FloatArray, corners: FloatArray
+) -> None:  # fmt: skip
+    for j in range(len(kinds)):
+        i = begins[kinds[j]] + sources[j]
+        corners[j, 0], corners[j, 1] = places[i, 0], places[i, 1]
+
+
+def placed(kinds: KindArray, sources: IntArray, places: Mapping[int, FloatArray]) -> FloatArray:
+    """Return the coordinates of corners, float64 (c, 2), given those of the sources of each kind."""
+    begins = np.zeros(len(CornerKind), dtype=np.int64)
+    begins[list(places)] = np.cumsum([0, *map(len, places.values())])[:-1]
+    corners = np.empty((len(kinds), 2))
+    _place(kinds, sources, begins, np.concatenate(list(places.values())), corners)
+    return corners
+
+
+@jit
+def _repetitions(offsets: IndexArray, corners: FloatArray, found: IndexArray) -> int:
+    """Write the corners that are followed by one with the same coordinates, as far as they fit; return how many."""
+    count = 0
+    for p in range(len(offsets) - 1):
+        for j in range(offsets[p], offsets[p + 1]):
+            after = j + 1 if j + 1 < offsets[p + 1] else offsets[p]
+            if corners[j, 0] == corners[after, 0] and corners[j, 1] == corners[after, 1]:
+                if count < len(found):
+                    found[count] = j
+                count += 1
+    return count
+
+
 def without_repetitions(cells: Cells) -> Cells:
     """Return the same cells without edges of no length: where the nearest doubles agree, rationals decide."""
-    after = np.arange(1, len(cells.corners) + 1)
-    after[cells.offsets[1:] - 1] = cells.offsets[:-1]
-    same = np.flatnonzero((cells.corners == cells.corners[after]).all(axis=1)).tolist()
-    again = [j for j in same if cells.exact_corner(j) == cells.exact_corner(int(after[j]))]
+    count = int(_repetitions(cells.offsets, cells.corners, np.empty(0, dtype=np.int64)))
+    same = np.empty(count, dtype=np.int64)
+    _repetitions(cells.offsets, cells.corners, same)
+    polygon = np.searchsorted(cells.offsets, same, side="right") - 1
+    after = np.where(same + 1 < cells.offsets[polygon + 1], same + 1, cells.offsets[polygon])
+    pairs = zip(same.tolist(), after.tolist(), strict=True)
+    again = [j for j, following in pairs if cells.exact_corner(j) == cells.exact_corner(following)]
     if not again:
         return cells
     kept = np.ones(len(cells.corners), dtype=np.bool_)

@@ -1,7 +1,11 @@
 """The Voronoi diagram as flat arrays, read-only; lists where scipy's users expect them."""
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from gmpy2 import mpq
@@ -11,11 +15,23 @@ from exactkernel.rational import RationalPoint
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.ordering import IndexArray
 from exactmesh.triangulation import Triangulation
-from exactmesh.voronoi.areas import areas_of_cells, area_of_polygon
-from exactmesh.voronoi.centres import exact_centre
+from exactmesh.voronoi.areas import area_of_polygon, areas_of_cells
 from exactmesh.voronoi.cells import Cells
+from exactmesh.voronoi.centres import exact_centre, nearest_doubles
 
 __all__ = ["Voronoi"]
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Millions of small lists without a cycle: looking for garbage among them takes longer than making them."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -35,8 +51,8 @@ class Voronoi:
             the second and on the right; -1 is infinity: a ray has its origin on the left, a line has no end.
         directions: float64 (r, 2), the direction of each ray, away from its origin, and of each line; zeros for
             segments; see :meth:`exact_direction`.
-        edge: int32 (r,), the row in ``triangulation.edges`` that each ridge is dual to, in the same direction: the ridge
-            is the edge turned clockwise by a right angle. Edges between cocircular points have no ridge.
+        edge: int32 (r,), the row in ``triangulation.edges`` that each ridge is dual to, in the same direction; the
+            ridge is the edge turned clockwise by a right angle. Edges between cocircular points have no ridge.
         triangle_vertex: int32 (m,), the vertex that is the circumcentre of each triangle.
         offsets, cells, cell_ridges: int64 (n + 1,), int32 (2 r,), int32 (2 r,): the cell of site i is the entries from
             offsets[i] to offsets[i + 1], counterclockwise. cells[j] is a vertex, or -1 between two rays, and
@@ -88,19 +104,26 @@ class Voronoi:
     @cached_property
     def ridge_vertices(self) -> list[list[int]]:
         """The two vertices of each ridge, as scipy has it: -1 is infinity, and comes first."""
-        rows: list[list[int]] = np.where(self.ends[:, 1:] < 0, self.ends[:, ::-1], self.ends).tolist()
+        with _without_collection():
+            rows: list[list[int]] = np.where(self.ends[:, 1:] < 0, self.ends[:, ::-1], self.ends).tolist()
         return rows
 
     @cached_property
     def regions(self) -> list[list[int]]:
         """The vertices of each cell, counterclockwise, as lists; -1 is infinity. Cell i is that of site i."""
         flat, bounds = self.cells.tolist(), self.offsets.tolist()
-        return [flat[i:j] for i, j in zip(bounds[:-1], bounds[1:], strict=True)]
+        with _without_collection():
+            return [flat[i:j] for i, j in pairwise(bounds)]
 
     @cached_property
     def areas(self) -> FloatArray:
         """The area of each cell, float64 (n,), infinite where it is unbounded; from the rounded vertices. O(n)."""
-        return areas_of_cells(self.points, self.vertices, self.offsets, self.cells)
+        areas = areas_of_cells(self.points, self.vertices, self.offsets, self.cells)
+        for site in np.flatnonzero(np.isnan(areas)).tolist():  # with a vertex beyond the doubles
+            exact = self.exact_area(site)
+            areas[site] = np.inf if exact is None else nearest_doubles((exact, exact))[0]
+        areas.setflags(write=False)
+        return areas
 
     @cached_property
     def _first_triangle(self) -> IndexArray:

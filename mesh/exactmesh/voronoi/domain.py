@@ -13,7 +13,7 @@ from exactmesh.errors import NotConformingError
 from exactmesh.ordering import IndexArray
 from exactmesh.triangulation import Triangulation
 from exactmesh.voronoi.cells import Cells, CornerKind, KindArray
-from exactmesh.voronoi.clipping import Diagram, without_repetitions
+from exactmesh.voronoi.clipping import Diagram, placed, without_repetitions
 from exactmesh.voronoi.walk import other_site
 
 __all__ = ["check_conforming", "clipped_to_domain"]
@@ -83,9 +83,7 @@ def clipped_to_domain(d: Diagram) -> Cells:
         d.ridge_points, d.offsets, d.cells, d.cell_ridges, sites, bounds, kinds, sources, neighbors
     )  # fmt: skip
     kinds, sources, neighbors = kinds[:size], sources[:size], neighbors[:size]
-    corners = np.empty((size, 2))
-    for kind, place in ((_VERTEX, d.vertices), (_MIDPOINT, _midpoints(d)), (_SITE, d.points)):
-        corners[kinds == kind] = place[sources[kinds == kind]]
+    corners = placed(kinds, sources, {_VERTEX: d.vertices, _MIDPOINT: _midpoints(d), _SITE: d.points})
     nothing, nobody = np.empty((0, 2)), np.empty((0, 3), dtype=np.int32)
     cells = Cells(
         d.points, sites[:count], bounds[: count + 1], corners, neighbors, kinds, sources, nothing, d.vertex_sites,

@@ -157,8 +157,8 @@ def _corner(triangles: IntArray, t: int, v: int) -> int:
 
 @jit
 def _fan(
-    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, t: int, i: int, at: int, cells: IntArray,
-    cell_ridges: IntArray,
+    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, t: int, i: int, at: int,
+    cells: IntArray, cell_ridges: IntArray,
 ) -> int:  # fmt: skip
     """Write an entry for each ridge around corner i of triangle t, counterclockwise; return where they end."""
     v, begin = triangles[t, i], t
@@ -180,8 +180,8 @@ def _fans(
 ) -> None:  # fmt: skip
     """Write the entries of all cells in the order in which triangles come to their sites, which is kind to caches.
 
-    Those on the boundary first: from ray to ray, and several times where the boundary meets itself. ``at`` comes as where
-    each cell begins.
+    Those on the boundary first: from ray to ray, and several times where the boundary meets itself. ``at`` comes as
+    where each cell begins.
     """
     for t in range(len(triangles)):
         for i in range(3):

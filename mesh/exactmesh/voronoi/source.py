@@ -63,10 +63,11 @@ def check_delaunay(mesh: Triangulation) -> None:
     check_corners(triangles)
     check_neighbors(triangles, neighbors)
     corners = mesh.points[triangles]
-    turned = np.flatnonzero(orient2d_batch(corners[:, 0], corners[:, 1], corners[:, 2]) <= 0) if len(triangles) else []
-    if len(turned):
+    turned = np.flatnonzero(orient2d_batch(*np.moveaxis(corners, 1, 0)) <= 0) if len(triangles) else np.arange(0)
+    if turned.size:
+        t = int(turned[0])
         raise TopologyError(
-            f"triangle {turned[0]} {tuple(triangles[turned[0]].tolist())} is not counterclockwise", indices=turned
+            f"triangle {t} {tuple(triangles[t].tolist())} is not counterclockwise", indices=turned.tolist()
         )
     alone = np.flatnonzero(np.bincount(triangles.reshape(-1), minlength=len(mesh.points)) == 0)
     if alone.size:
@@ -76,8 +77,8 @@ def check_delaunay(mesh: Triangulation) -> None:
         t, i = divmod(side, 3)
         a, b = int(triangles[t, (i + 1) % 3]), int(triangles[t, (i + 2) % 3])
         raise NotDelaunayError(
-            f"edge ({a}, {b}) between triangles {t} and {neighbors[t, i]} is not locally Delaunay: the triangulation has "
-            "no Voronoi diagram as its dual (give its points, or refine it with conforming=True)",
+            f"edge ({a}, {b}) between triangles {t} and {neighbors[t, i]} is not locally Delaunay: the "
+            "triangulation has no Voronoi diagram as its dual (give its points, or refine it with conforming=True)",
             indices=[a, b],
         )
 

@@ -143,9 +143,9 @@ def walk_around(
 ) -> int:  # fmt: skip
     """Write a row of ``visits`` for each time that the boundary of the window passes a cell; return how many.
 
-    ``start`` is a site nearest to the first corner. Sides are counted on: in the first visit, whose beginning is that
-    of the last one, that of entry may be negative. One visit that comes and goes nowhere, -1, is that of a window inside of
-    one cell. Returns -1 if there is no room.
+    ``start`` is a site nearest to the first corner. Sides are counted on: that of entry is not positive in the first
+    visit, which begins where the last one does. One visit that comes and goes nowhere, -1, is that of a window inside
+    of one cell. Returns -1 if there is no room.
     """
     sides, count = len(window), 0
     s = start
