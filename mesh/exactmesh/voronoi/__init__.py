@@ -9,5 +9,20 @@ from exactmesh.voronoi.build import Clip, voronoi
 from exactmesh.voronoi.cells import Cells, CornerKind
 from exactmesh.voronoi.centres import circumcentres, dual_edges
 from exactmesh.voronoi.diagram import Voronoi
+from exactmesh.voronoi.interpolation import NaturalNeighbors, interpolate, natural_neighbors
+from exactmesh.voronoi.relaxation import Relaxation, lloyd
 
-__all__ = ["Cells", "Clip", "CornerKind", "Voronoi", "circumcentres", "dual_edges", "voronoi"]
+__all__ = [
+    "Cells",
+    "Clip",
+    "CornerKind",
+    "NaturalNeighbors",
+    "Relaxation",
+    "Voronoi",
+    "circumcentres",
+    "dual_edges",
+    "interpolate",
+    "lloyd",
+    "natural_neighbors",
+    "voronoi",
+]

@@ -160,7 +160,7 @@ class Voronoi:
 
         >>> from exactmesh import voronoi
         >>> voronoi([(0, 0), (3, 0), (-3, 0), (0, 1), (0, -1)]).exact_area(0)
-        mpq(35,3)
+        mpq(3,1)
         """
         cell = self.cells[self.offsets[site] : self.offsets[site + 1]].tolist()
         if -1 in cell or not cell:
