@@ -71,6 +71,6 @@ def cell_of(points: Sequence[RationalPoint], i: int, window: Polygon) -> Polygon
 
 def sibson(points: Sequence[RationalPoint], q: RationalPoint) -> dict[int, Fraction]:
     """Which part of the cell of q lies in the cell of each (distinct) point; q lies inside their hull."""
-    own = cell_of([*points, q], len(points), plane(400))
+    own = cell_of([*points, q], len(points), plane())
     parts = {i: cell_of(points, i, own) for i in range(len(points))}
     return {i: area(part) / area(own) for i, part in parts.items() if part}
