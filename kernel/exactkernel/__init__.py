@@ -14,12 +14,14 @@ from exactkernel.constructions import (
     segment_crossing,
 )
 from exactkernel.diametral import diametral, diametral_staged
-from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
+from exactkernel.errors import BoundError, CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
 from exactkernel.incircle import incircle, incircle_perturbed, incircle_staged
 from exactkernel.orient2d import orient2d, orient2d_staged
+from exactkernel.shape import angle_above, angle_below, area_above, length_above
 from exactkernel.types import Coordinate, PointLike, Sign, Stage
 
 __all__ = [
+    "BoundError",
     "Coordinate",
     "CoordinateError",
     "DegenerateError",
@@ -30,6 +32,9 @@ __all__ = [
     "ShapeError",
     "Sign",
     "Stage",
+    "angle_above",
+    "angle_below",
+    "area_above",
     "circumcentre",
     "diametral",
     "diametral_batch",
@@ -38,6 +43,7 @@ __all__ = [
     "incircle_batch",
     "incircle_perturbed",
     "incircle_staged",
+    "length_above",
     "orient2d",
     "orient2d_batch",
     "orient2d_staged",

@@ -7,6 +7,7 @@ their product 10 u, and second-order terms as incircle has them.
 
 import math
 
+from exactkernel.bisector_rational import along_from_doubles, crossing_order_from_doubles, nearer_from_doubles
 from exactkernel.circumcentre import quotient_offset
 from exactkernel.constants import DD_BOUND, INCIRCLE_BOUND, ORIENT2D_BOUND, UNIT_ROUNDOFF
 from exactkernel.context import Context
@@ -16,7 +17,6 @@ from exactkernel.expansions import determinant_2x2, expansion_product, expansion
 from exactkernel.incircle import lift_double_double
 from exactkernel.jit import jit
 from exactkernel.orient2d import products_difference
-from exactkernel.rational import along_from_doubles, crossing_order_from_doubles, nearer_from_doubles
 from exactkernel.types import FloatArray
 
 __all__ = ["along_adaptive", "bisector_crossing", "crossing_order_adaptive", "nearer_adaptive"]

@@ -18,6 +18,7 @@ __all__ = [
     "DD_BOUND",
     "GRID_STEPS",
     "INCIRCLE_BOUND",
+    "LARGEST_WEIGHT",
     "MAX_COORDINATE_DEGREE_2",
     "MAX_COORDINATE_DEGREE_4",
     "MIN_COORDINATE_DEGREE_2",
@@ -25,6 +26,8 @@ __all__ = [
     "MIN_UNIT_DEGREE_2",
     "MIN_UNIT_DEGREE_4",
     "ORIENT2D_BOUND",
+    "SHAPE_FACTOR",
+    "SMALLEST_WEIGHT",
     "SPLITTER",
     "UNIT_ROUNDOFF",
 ]
@@ -40,6 +43,11 @@ ORIENT2D_BOUND: Final = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF
 #: incircle: lift 4u, cross product 4u, their product 9u, the sum of three 10u (the last addition is free), which with
 #: the second-order terms is C = 10u + 75u^2.
 INCIRCLE_BOUND: Final = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF
+
+#: Angles, areas and lengths against a bound: the bound of orient2d times this. Angles: cross and scalar product 4u,
+#: sine and cosine u, product 6u, C = 6u + O(u^2). Areas: the cross product 4u, the bound exact. Lengths: 4u, too. Twice
+#: what is needed leaves room for what underflows: see SMALLEST_WEIGHT.
+SHAPE_FACTOR: Final = 4.0
 
 #: The double-double determinants. The differences are exact pairs; a product of pairs errs by at most 7u^2 relative to
 #: its value and a sum by at most 3u^2 relative to the sum of the absolute values [Joldes 2017]. orient2d: 7 + 3 = 10
@@ -68,3 +76,10 @@ MIN_COORDINATE_DEGREE_4: Final = 2.0**-216
 # multiplies by 2^27 + 1 before it subtracts; the largest number split is a factor, below 2^(2M+4), which leaves room.
 MAX_COORDINATE_DEGREE_2: Final = 2.0**509
 MAX_COORDINATE_DEGREE_4: Final = 2.0**253
+
+# Measures against a bound multiply products of degree 2 by a sine, or compare them with any double: such values are no
+# multiples of g^2 and may underflow, by at most 2^-1075 an operation. Where the permanent is at least SMALLEST_WEIGHT,
+# the bound of the filter has more than 2^-1013 to spare, that of the double-doubles more than 2^-960, and a few
+# underflows in it or beside it do no harm. At most LARGEST_WEIGHT: the split of the double-doubles does not overflow.
+SMALLEST_WEIGHT: Final = 2.0**-850
+LARGEST_WEIGHT: Final = 2.0**990

@@ -2,7 +2,15 @@
 
 from collections.abc import Callable, Sequence
 
-__all__ = ["CoordinateError", "DegenerateError", "ExactMeshError", "NonFiniteError", "ShapeError", "shown"]
+__all__ = [
+    "BoundError",
+    "CoordinateError",
+    "DegenerateError",
+    "ExactMeshError",
+    "NonFiniteError",
+    "ShapeError",
+    "shown",
+]
 
 _LONGEST = 120
 
@@ -47,6 +55,10 @@ class NonFiniteError(CoordinateError):
 
 class ShapeError(ExactMeshError):
     """An array or a point has the wrong shape."""
+
+
+class BoundError(ExactMeshError):
+    """A bound on angles, areas or lengths is no number, or lies outside its range."""
 
 
 class DegenerateError(ExactMeshError):

@@ -19,23 +19,23 @@ import numpy.typing as npt
 from gmpy2 import mpq, sign
 from numba import types as numba_types
 
+from exactkernel.anglebound import corner_sign
 from exactkernel.jit import COMPILED, jit
 
 __all__ = [
+    "ANGLE",
+    "AREA",
+    "LENGTH",
     "RationalPoint",
-    "along_from_doubles",
-    "along_rational",
-    "crossing_order_from_doubles",
-    "crossing_order_rational",
     "diametral_from_doubles",
     "diametral_rational",
     "incircle_from_doubles",
     "incircle_rational",
-    "nearer_from_doubles",
-    "nearer_rational",
     "orient2d_from_doubles",
     "orient2d_rational",
     "raise_if_interrupted",
+    "shape_from_doubles",
+    "shape_rational",
 ]
 
 RationalPoint: TypeAlias = "tuple[mpq, mpq]"
@@ -69,25 +69,23 @@ def diametral_rational(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> 
     return int(sign((p[0] - a[0]) * (b[0] - p[0]) + (p[1] - a[1]) * (b[1] - p[1])))
 
 
-def nearer_rational(p: RationalPoint, q: RationalPoint, x: RationalPoint) -> int:
-    """Return the exact sign of |x - p|^2 - |x - q|^2: +1 if x is nearer to q than to p."""
-    px, py, qx, qy = x[0] - p[0], x[1] - p[1], x[0] - q[0], x[1] - q[1]
-    return int(sign(px * px + py * py - qx * qx - qy * qy))
+#: The questions of :func:`shape_rational`.
+ANGLE, AREA, LENGTH = 0.0, 1.0, 2.0
 
 
-def along_rational(p: RationalPoint, q: RationalPoint, a: RationalPoint, b: RationalPoint) -> int:
-    """Return the exact sign of the inner product (q - p) (b - a)."""
-    return int(sign((q[0] - p[0]) * (b[0] - a[0]) + (q[1] - p[1]) * (b[1] - a[1])))
+def shape_rational(question: float, bound: mpq, a: RationalPoint, b: RationalPoint, c: RationalPoint) -> int:
+    """Return the exact sign of a measure of the counterclockwise triangle abc against a bound.
 
-
-def crossing_order_rational(
-    s: RationalPoint, p: RationalPoint, q: RationalPoint, a: RationalPoint, b: RationalPoint
-) -> int:
-    """Return the exact sign of N(p) D(q) - N(q) D(p), where a + (b - a) N(p) / (2 D(p)) is as near to s as to p."""
-    dx, dy, cx, cy = b[0] - a[0], b[1] - a[1], s[0] - a[0], s[1] - a[1]
-    px, py, qx, qy = p[0] - s[0], p[1] - s[1], q[0] - s[0], q[1] - s[1]
-    n_p, n_q = 2 * (px * cx + py * cy) + px * px + py * py, 2 * (qx * cx + qy * cy) + qx * qx + qy * qy
-    return int(sign(n_p * (qx * dx + qy * dy) - n_q * (px * dx + py * dy)))
+    ``ANGLE``: the bound in degrees minus the angle at a. ``AREA``: the area minus the bound. ``LENGTH``: the length of
+    ab minus the bound, which is not negative.
+    """
+    ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
+    if question == LENGTH:
+        return int(sign(ux * ux + uy * uy - bound * bound))
+    cross = ux * vy - uy * vx
+    if question == AREA:
+        return int(sign(cross - 2 * bound))
+    return corner_sign(cross, ux * vx + uy * vy, bound)
 
 
 _pending: list[BaseException] = []
@@ -145,27 +143,14 @@ def _incircle(ax: float, ay: float, bx: float, by: float, cx: float, cy: float, 
     return incircle_rational((mpq(ax), mpq(ay)), (mpq(bx), mpq(by)), (mpq(cx), mpq(cy)), (mpq(dx), mpq(dy)))
 
 
-def _nearer(px: float, py: float, qx: float, qy: float, x: float, y: float) -> int:
-    return nearer_rational((mpq(px), mpq(py)), (mpq(qx), mpq(qy)), (mpq(x), mpq(y)))
-
-
-def _along(px: float, py: float, qx: float, qy: float, ax: float, ay: float, bx: float, by: float) -> int:
-    return along_rational((mpq(px), mpq(py)), (mpq(qx), mpq(qy)), (mpq(ax), mpq(ay)), (mpq(bx), mpq(by)))
-
-
-def _crossing_order(
-    sx: float, sy: float, px: float, py: float, qx: float, qy: float, ax: float, ay: float, bx: float, by: float
-) -> int:
-    s, p, q = (mpq(sx), mpq(sy)), (mpq(px), mpq(py)), (mpq(qx), mpq(qy))
-    return crossing_order_rational(s, p, q, (mpq(ax), mpq(ay)), (mpq(bx), mpq(by)))
+def _shape(question: float, bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    return shape_rational(question, mpq(bound), (mpq(ax), mpq(ay)), (mpq(bx), mpq(by)), (mpq(cx), mpq(cy)))
 
 
 _ask_orient2d = _register("exactmesh_orient2d_rational", _orient2d, 6)
 _ask_diametral = _register("exactmesh_diametral_rational", _diametral, 6)
 _ask_incircle = _register("exactmesh_incircle_rational", _incircle, 8)
-_ask_nearer = _register("exactmesh_nearer_rational", _nearer, 6)
-_ask_along = _register("exactmesh_along_rational", _along, 8)
-_ask_crossing_order = _register("exactmesh_crossing_order_rational", _crossing_order, 10)
+_ask_shape = _register("exactmesh_shape_rational", _shape, 8)
 
 
 @jit
@@ -225,41 +210,14 @@ def incircle_from_doubles(
 
 
 @jit
-def nearer_from_doubles(mailbox: Mailbox, px: float, py: float, qx: float, qy: float, x: float, y: float) -> int:
-    """Return the exact sign of nearer of any finite doubles, from compiled code."""
-    attempt = 0
-    while True:
-        number = _next_number(mailbox, attempt)
-        _ask_nearer(mailbox.ctypes.data, number, attempt, px, py, qx, qy, x, y)
-        if _is_answered(mailbox, number):
-            return int(mailbox[1] & 3) - 2
-        attempt += 1
-
-
-@jit
-def along_from_doubles(
-    mailbox: Mailbox, px: float, py: float, qx: float, qy: float, ax: float, ay: float, bx: float, by: float
+def shape_from_doubles(
+    mailbox: Mailbox, question: float, bound: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 ) -> int:
-    """Return the exact sign of along of any finite doubles, from compiled code."""
+    """Return :func:`shape_rational` of any finite doubles, from compiled code."""
     attempt = 0
     while True:
         number = _next_number(mailbox, attempt)
-        _ask_along(mailbox.ctypes.data, number, attempt, px, py, qx, qy, ax, ay, bx, by)
-        if _is_answered(mailbox, number):
-            return int(mailbox[1] & 3) - 2
-        attempt += 1
-
-
-@jit
-def crossing_order_from_doubles(
-    mailbox: Mailbox, sx: float, sy: float, px: float, py: float, qx: float, qy: float,
-    ax: float, ay: float, bx: float, by: float,
-) -> int:  # fmt: skip
-    """Return the exact sign of crossing_order of any finite doubles, from compiled code."""
-    attempt = 0
-    while True:
-        number = _next_number(mailbox, attempt)
-        _ask_crossing_order(mailbox.ctypes.data, number, attempt, sx, sy, px, py, qx, qy, ax, ay, bx, by)
+        _ask_shape(mailbox.ctypes.data, number, attempt, question, bound, ax, ay, bx, by, cx, cy)
         if _is_answered(mailbox, number):
             return int(mailbox[1] & 3) - 2
         attempt += 1

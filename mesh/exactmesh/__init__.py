@@ -29,6 +29,7 @@ from exactmesh.errors import (
     NonFiniteError,
     NotConformingError,
     NotDelaunayError,
+    OptionError,
     PSLGError,
     SeedError,
     ShapeError,
@@ -42,6 +43,7 @@ from exactmesh.lawson import flip, is_flippable, is_locally_delaunay, lawson
 from exactmesh.pslg import PSLG, Carve
 from exactmesh.quadedge import Dual, Edge, Primal, QuadEdge
 from exactmesh.quality import Statistics
+from exactmesh.refinement import Reason, Refinement, Steiner, SteinerKind, refine
 from exactmesh.triangulation import Triangulation, Work
 from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
 from exactmesh.voronoi import Voronoi, voronoi
@@ -73,12 +75,15 @@ __all__ = [
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
+    "OptionError",
     "Orientation",
     "PSLGError",
     "Primal",
     "Property",
     "QuadEdge",
     "QuarterEdge",
+    "Reason",
+    "Refinement",
     "Report",
     "Rounding",
     "SeedError",
@@ -87,6 +92,8 @@ __all__ = [
     "Sign",
     "Stage",
     "Statistics",
+    "Steiner",
+    "SteinerKind",
     "TooFewPointsError",
     "TooManyCrossingsError",
     "TooManyPointsError",
@@ -107,6 +114,7 @@ __all__ = [
     "is_flippable",
     "is_locally_delaunay",
     "lawson",
+    "refine",
     "verify",
     "voronoi",
 ]

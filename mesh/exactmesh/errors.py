@@ -10,12 +10,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.errors import CoordinateError, DegenerateError, ExactMeshError, NonFiniteError, ShapeError
+from exactkernel.errors import (
+    BoundError,
+    CoordinateError,
+    DegenerateError,
+    ExactMeshError,
+    NonFiniteError,
+    ShapeError,
+)
 
 if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "BoundError",
     "ChoiceError",
     "ClipError",
     "CollinearPointsError",
@@ -33,6 +41,7 @@ __all__ = [
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
+    "OptionError",
     "PSLGError",
     "SeedError",
     "ShapeError",
@@ -45,6 +54,10 @@ __all__ = [
 
 class ChoiceError(ExactMeshError):
     """An argument that must be one of a few words is another."""
+
+
+class OptionError(ExactMeshError):
+    """An option is out of range, or of the wrong kind."""
 
 
 class TooFewPointsError(ExactMeshError):

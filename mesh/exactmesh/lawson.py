@@ -32,7 +32,7 @@ from exactmesh.quadedge import Edge, Primal
 from exactmesh.triangulation import Triangulation, work_of
 from exactmesh.verify import Property, Report, verify
 
-__all__ = ["flip", "is_flippable", "is_locally_delaunay", "lawson"]
+__all__ = ["flip", "flip_all", "is_flippable", "is_locally_delaunay", "lawson"]
 
 _CHUNK = 1 << 19  # edges tested between two looks at Ctrl-C, where predicates are fast
 
@@ -161,7 +161,7 @@ def flip_until_delaunay(
 
 
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
-def _flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, fixed: npt.NDArray[np.bool_]) -> int:
+def flip_all(xy: FloatArray, k: Context, ring: EdgeArray, org: EdgeArray, fixed: npt.NDArray[np.bool_]) -> int:
     """Flip until every edge but the fixed ones is locally Delaunay; return the number of flips."""
     edges = len(fixed)
     stack, waiting = np.arange(edges, dtype=np.int32), np.ones(edges, dtype=np.bool_)
@@ -246,7 +246,7 @@ def lawson(points: npt.ArrayLike, triangles: npt.ArrayLike, *, segments: npt.Arr
     built = Insertion(k, xy.reshape(-1), same.astype(np.int64), ring, org, same, len(fixed), 0)
     edges = _constrained(graph, built, report)
     fixed[edges.edges] = True
-    built = built._replace(flips=_flip_all(xy, k, ring, org, fixed))
+    built = built._replace(flips=flip_all(xy, k, ring, org, fixed))
     slot = np.where(outer.reshape(-1, 2)[:, ::-1].reshape(-1), OUTER, -1).astype(np.int32)
     found, neighbors = triangles_of(ring, org, slot, same)
     if segments is None:

@@ -12,7 +12,7 @@ from exactmesh.columns import MarkerArray
 from exactmesh.plane import BoolArray
 from exactmesh.pslg import PSLG
 
-__all__ = ["boundary_edges", "markers_along", "markers_of_edges", "vertex_markers"]
+__all__ = ["boundary_edges", "edge_keys", "markers_along", "markers_of_edges", "vertex_markers"]
 
 
 def _first_nonzero(rows: IntArray, values: MarkerArray, size: int) -> MarkerArray:
@@ -64,16 +64,17 @@ def markers_of_edges(edges: IntArray, boundary: IntArray, segments: IntArray, ma
 
     ``boundary`` and ``segments`` are edges among them. O(k log k).
     """
-    keys = _keys(edges)
+    keys = edge_keys(edges)
     order = np.argsort(keys)
     found = np.zeros(len(edges), dtype=np.int64)
-    found[order[np.searchsorted(keys, _keys(boundary), sorter=order)]] = 1
-    rows = order[np.searchsorted(keys, _keys(segments), sorter=order)]
+    found[order[np.searchsorted(keys, edge_keys(boundary), sorter=order)]] = 1
+    rows = order[np.searchsorted(keys, edge_keys(segments), sorter=order)]
     found[rows[markers != 0]] = markers[markers != 0]
     return found
 
 
-def _keys(edges: IntArray) -> MarkerArray:
+def edge_keys(edges: IntArray) -> MarkerArray:
+    """Return a number for each edge, the same in both directions."""
     low, high = edges.min(axis=1).astype(np.int64), edges.max(axis=1)
     keys: MarkerArray = low << 32 | high
     return keys

@@ -17,13 +17,13 @@ from exactkernel.rational import RationalPoint, raise_if_interrupted
 from exactkernel.types import FloatArray
 from exactmesh.crossings.chains import Chains, LongArray
 
-__all__ = ["is_anything_moved", "largest_distances_squared"]
+__all__ = ["across", "beside", "distance_squared", "is_anything_moved", "largest_distances_squared"]
 
 _CHUNK = 1 << 16  # segments between two looks at Ctrl-C
 
 
 @jit
-def _across(k: Context, ends: FloatArray, s: int, x: float, y: float) -> tuple[float, float]:
+def across(k: Context, ends: FloatArray, s: int, x: float, y: float) -> tuple[float, float]:
     """Return bounds of |(b - a) x (p - a)|, which is the distance of p from the line times the length of ab."""
     ax, ay, bx, by = ends[s, 0], ends[s, 1], ends[s, 2], ends[s, 3]
     if (x == ax and y == ay) or (x == bx and y == by) or orient2d_adaptive(k, ax, ay, bx, by, x, y) == 0:
@@ -40,7 +40,7 @@ def _across(k: Context, ends: FloatArray, s: int, x: float, y: float) -> tuple[f
 
 
 @jit
-def _beside(ends: FloatArray, s: int, x: float, y: float) -> bool:
+def beside(ends: FloatArray, s: int, x: float, y: float) -> bool:
     """Tell whether p surely lies between the perpendiculars in both ends; False when in doubt."""
     ax, ay, bx, by = ends[s, 0], ends[s, 1], ends[s, 2], ends[s, 3]
     ux, uy = bx - ax, by - ay
@@ -66,16 +66,16 @@ def _candidates(
         best = 0.0
         for i in range(start[s], start[s + 1]):
             x, y = points[vertices[i], 0], points[vertices[i], 1]
-            low, high = _across(k, ends, s, x, y)
-            if low > best and _beside(ends, s, x, y):
+            low, high = across(k, ends, s, x, y)
+            if low > best and beside(ends, s, x, y):
                 best = low
         for i in range(start[s], start[s + 1]):
             x, y = points[vertices[i], 0], points[vertices[i], 1]
             at_end = (x == ends[s, 0] and y == ends[s, 1]) or (x == ends[s, 2] and y == ends[s, 3])
             if at_end:
                 continue
-            low, high = _across(k, ends, s, x, y)
-            if (high > 0.0 and high >= best) or not _beside(ends, s, x, y):
+            low, high = across(k, ends, s, x, y)
+            if (high > 0.0 and high >= best) or not beside(ends, s, x, y):
                 out[n] = i
                 n += 1
     return n
@@ -95,7 +95,7 @@ def _first_moved(
     for s in range(first, stop):
         for i in range(start[s], start[s + 1]):
             v = vertices[i]
-            if _across(k, ends, s, points[v, 0], points[v, 1])[1] > 0.0:
+            if across(k, ends, s, points[v, 0], points[v, 1])[1] > 0.0:
                 return s
     return stop
 
@@ -129,7 +129,7 @@ def is_anything_moved(points: FloatArray, begins: FloatArray, ends: FloatArray, 
     return False
 
 
-def _distance_squared(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> mpq:
+def distance_squared(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> mpq:
     """Return the exact squared distance of p from the segment ab."""
     ux, uy, px, py = b[0] - a[0], b[1] - a[1], p[0] - a[0], p[1] - a[1]
     along, length_squared = ux * px + uy * py, ux * ux + uy * uy
@@ -137,8 +137,8 @@ def _distance_squared(a: RationalPoint, b: RationalPoint, p: RationalPoint) -> m
         return px * px + py * py
     if along >= length_squared:
         return (p[0] - b[0]) * (p[0] - b[0]) + (p[1] - b[1]) * (p[1] - b[1])
-    across = ux * py - uy * px
-    return across * across / length_squared
+    cross = ux * py - uy * px
+    return cross * cross / length_squared
 
 
 def _all_candidates(
@@ -170,5 +170,5 @@ def largest_distances_squared(
                 (mpq(q[0]), mpq(q[1]))
                 for q in (begins[s].tolist(), ends[s].tolist(), points[chains.vertices[i]].tolist())
             )
-            largest[s] = max(largest[s], _distance_squared(a, b, p))
+            largest[s] = max(largest[s], distance_squared(a, b, p))
     return tuple(largest)
