@@ -13,7 +13,9 @@ from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
     ChoiceError,
+    ClipError,
     CollinearPointsError,
+    ConflictingValuesError,
     ConstrainedVertexError,
     CoordinateError,
     CrossingError,
@@ -25,6 +27,8 @@ from exactmesh.errors import (
     GeometryError,
     InadmissibleError,
     NonFiniteError,
+    NotConformingError,
+    NotDelaunayError,
     OptionError,
     PSLGError,
     SeedError,
@@ -43,6 +47,7 @@ from exactmesh.quality import Statistics
 from exactmesh.refinement import Reason, Refinement, Steiner, SteinerKind, refine
 from exactmesh.triangulation import Triangulation, Work
 from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
+from exactmesh.voronoi import Voronoi, voronoi
 
 __all__ = [
     "OUTSIDE",
@@ -50,7 +55,9 @@ __all__ = [
     "Arrangement",
     "Carve",
     "ChoiceError",
+    "ClipError",
     "CollinearPointsError",
+    "ConflictingValuesError",
     "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
@@ -67,6 +74,8 @@ __all__ = [
     "InadmissibleError",
     "Meeting",
     "NonFiniteError",
+    "NotConformingError",
+    "NotDelaunayError",
     "OptionError",
     "Orientation",
     "PSLGError",
@@ -97,6 +106,7 @@ __all__ = [
     "VerificationError",
     "Vertex",
     "Violation",
+    "Voronoi",
     "Work",
     "arrange",
     "constrained_delaunay",
@@ -108,4 +118,5 @@ __all__ = [
     "lawson",
     "refine",
     "verify",
+    "voronoi",
 ]

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 __all__ = [
     "BoundError",
     "ChoiceError",
+    "ClipError",
     "CollinearPointsError",
+    "ConflictingValuesError",
     "ConstrainedVertexError",
     "CoordinateError",
     "CrossingError",
@@ -37,6 +39,8 @@ __all__ = [
     "GeometryError",
     "InadmissibleError",
     "NonFiniteError",
+    "NotConformingError",
+    "NotDelaunayError",
     "OptionError",
     "PSLGError",
     "SeedError",
@@ -75,6 +79,22 @@ class CollinearPointsError(ExactMeshError):
 
 class ConstrainedVertexError(ExactMeshError):
     """A vertex cannot be deleted, for it lies on segments: ``indices`` names them."""
+
+
+class NotDelaunayError(ExactMeshError):
+    """A triangulation that has to be Delaunay is not: ``indices`` are the ends of an edge."""
+
+
+class NotConformingError(ExactMeshError):
+    """A circumcentre lies beyond an edge of the boundary: ``indices`` are the ends of that edge."""
+
+
+class ClipError(ExactMeshError):
+    """A window that is no box and no convex polygon, or points that should lie inside of it: ``indices`` names them."""
+
+
+class ConflictingValuesError(ExactMeshError):
+    """Points at the same position have different values: ``indices`` are two of them."""
 
 
 class SeedError(ExactMeshError):
