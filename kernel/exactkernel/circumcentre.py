@@ -178,7 +178,7 @@ def _decided(
 def nearest_circumcentre(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 ) -> tuple[float, float, bool]:
-    """Return the doubles nearest to the circumcentre of a, b, c, and whether they are certain: else ask the rationals."""
+    """Return the doubles nearest to the circumcentre of a, b, c, and whether that is certain; else ask the rationals."""
     x, x_tail, x_error, y, y_tail, y_error = circumcentre_in_pairs(k, ax, ay, bx, by, cx, cy)
     if not (x_error < math.inf and y_error < math.inf):
         return x, y, False

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import numpy.typing as npt
 from gmpy2 import mpq
 
 from exactkernel.circumcentre import nearest_circumcentre
@@ -71,16 +72,16 @@ def centres_of(points: FloatArray, triangles: IntArray) -> FloatArray:
     scaled = np.ldexp(points, exponent) if exponent else points
     k, centres = make_context(scaled), np.empty((len(triangles), 2))
     step = chunk_size(k, _CHUNK)
-    room, lost = np.empty(min(step, len(triangles)), dtype=np.int32), []
+    room = np.empty(min(step, len(triangles)), dtype=np.int32)
+    lost: list[npt.NDArray[np.int_]] = []
     for first in range(0, len(triangles), step):
         count = _nearest_range(k, scaled, triangles, first, min(first + step, len(triangles)), centres, room)
-        lost.append(room[:count].copy())
+        lost.append(room[:count].astype(np.int64))
         raise_if_interrupted()
     if exponent:
         centres = np.ldexp(centres, -exponent)
         size = np.abs(centres)
-        lost.append(np.flatnonzero((~(size < np.inf) | ((size < _SMALLEST_SAFE) & (size > 0.0))).any(axis=1)))
-        lost.append(np.flatnonzero((centres == 0.0).any(axis=1)))
+        lost.append(np.flatnonzero(~((size < np.inf) & (size >= _SMALLEST_SAFE)).all(axis=1)))
     for t in np.unique(np.concatenate(lost)).tolist() if lost else ():
         centres[t] = nearest_doubles(exact_centre(points, triangles, t))
     return centres
@@ -89,8 +90,8 @@ def centres_of(points: FloatArray, triangles: IntArray) -> FloatArray:
 def circumcentres(mesh: Triangulation) -> FloatArray:
     """Return the circumcentre of each triangle, float64 (m, 2): the doubles nearest to the exact ones, ties to even.
 
-    A coordinate beyond the largest double is infinite, as rounding has it. Triangle j of the mesh is row j: centres
-    that coincide, of cocircular points, are all there. What :class:`exactmesh.Voronoi` calls vertices are these, merged.
+    A coordinate beyond the largest double is infinite, as rounding has it. Row j is that of triangle j: centres that
+    coincide, of cocircular points, are all there. What :class:`exactmesh.Voronoi` calls vertices are these, merged.
 
     Raises:
         TopologyError: a triangle has no area.
@@ -120,10 +121,10 @@ def dual_edges(mesh: Triangulation) -> tuple[IntArray, FloatArray]:
     Edge i of ``mesh.edges`` is Voronoi edge i turned counterclockwise by a right angle.
 
     Returns:
-        int32 (k, 2), the triangle on the left of the edge and the one on its right, which are the circumcentres that the
-        Voronoi edge connects; -1 where there is none, and the Voronoi edge is a ray;
+        int32 (k, 2), the triangle on the left of the edge and the one on its right, whose circumcentres the Voronoi edge
+        connects; the second is -1 for a ray;
         float64 (k, 2), the direction of each ray, at a right angle away from its edge and as long (half as long where
-        that would overflow), and zeros for edges that are no rays.
+        that would overflow); zeros for edges that are no rays.
 
     O(m). Edges between triangles of one circumcircle have duals of length 0.
 
