@@ -13,7 +13,7 @@ __all__ = ["ele_text", "read_ele"]
 _CORNERS = 3
 
 
-def read_ele(path: str, points: int, base: int) -> tuple[IntArray, FloatArray]:
+def read_ele(path: str | TextFile, points: int, base: int) -> tuple[IntArray, FloatArray]:
     """Return the corners (m, 3), counted from 0, and attributes (m, b) of a ``.ele`` file.
 
     Header ``N nodes_per_triangle attributes`` (missing fields: 3, 0), then N rows ``i n1 n2 n3 ...
@@ -22,7 +22,7 @@ def read_ele(path: str, points: int, base: int) -> tuple[IntArray, FloatArray]:
     Raises:
         FileFormatError: where and what.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     names = ("number of triangles", "number of nodes per triangle", "number of attributes")
     count, nodes, attributes = file.header(names, (0, _CORNERS, 0))
     if nodes not in (_CORNERS, 2 * _CORNERS):

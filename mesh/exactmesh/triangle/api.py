@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.types import IntArray
+from exactkernel.types import FloatArray, IntArray
 from exactmesh.delaunay import Progress
 from exactmesh.delaunay import delaunay as delaunay_mesh
 from exactmesh.triangle.dictionary import TriangleDict, given_of
@@ -16,8 +16,9 @@ from exactmesh.triangle.result import dictionary_of
 from exactmesh.triangle.solve import Solution, Unsuitable, origin_of, solve
 from exactmesh.triangle.switches import MEANINGS, Switch, parse
 from exactmesh.verify import verify
+from exactmesh.voronoi import circumcentres, dual_edges
 
-__all__ = ["convex_hull", "delaunay", "triangulate"]
+__all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
 
 
 def triangulate(
@@ -102,3 +103,23 @@ def convex_hull(pts: npt.ArrayLike) -> IntArray:
     """
     mesh = delaunay_mesh(pts)
     return hull_edges(mesh.hull, origin_of(mesh, len(mesh.representative))).astype(np.int32)
+
+
+def voronoi(pts: npt.ArrayLike) -> tuple[FloatArray, IntArray, IntArray, FloatArray]:
+    """Return the Voronoi diagram, edge by edge the dual of the Delaunay triangulation.
+
+    Returns:
+        float64 (m, 2), the circumcentres, in the order of ``delaunay(pts)``: of cocircular points, several coincide;
+        int32 (k, 2), the edges, circumcentres of two triangles;
+        int32 (h,), the circumcentres at which rays begin;
+        float64 (h, 2), the directions of the rays.
+
+    >>> from exactmesh import triangle
+    >>> points, edges, origins, directions = triangle.voronoi([(0, 0), (2, 0), (0, 2)])
+    >>> points.tolist(), edges.shape, origins.tolist(), directions.tolist()
+    ([[1.0, 1.0]], (0, 2), [0, 0, 0], [[2.0, 2.0], [-2.0, 0.0], [0.0, -2.0]])
+    """
+    mesh = delaunay_mesh(pts)
+    ends, directions = dual_edges(mesh)
+    rays = ends[:, 1] < 0
+    return circumcentres(mesh), ends[~rays], ends[rays, 0], directions[rays]
