@@ -120,7 +120,7 @@ def _letter() -> Content:
 def _bbox() -> Content:
     """A box that is triangulated, to be refined where its areas say so, by ``ra``."""
     vertices, triangles = _grid(2, 2)
-    areas = 0.5 / 4.0 ** np.arange(len(triangles))[:, None]
+    areas = 0.5 / 2.0 ** np.arange(len(triangles))[:, None]
     return {"vertices": vertices, "triangles": triangles, "triangle_max_area": areas}
 
 
