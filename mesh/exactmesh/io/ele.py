@@ -8,7 +8,7 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.io.model import Mesh
 from exactmesh.io.text import TextFile, rows_of_text
 
-__all__ = ["ele_text", "read_ele"]
+__all__ = ["ele_text", "elements_text", "read_ele"]
 
 _CORNERS = 3
 
@@ -36,8 +36,12 @@ def read_ele(path: str | TextFile, points: int, base: int) -> tuple[IntArray, Fl
 def ele_text(mesh: Mesh) -> Iterator[str]:
     """Yield the text of a ``.ele`` file that :func:`read_ele` reads back."""
     triangles = np.zeros((0, _CORNERS), dtype=np.int32) if mesh.triangles is None else mesh.triangles
-    attributes = 0 if mesh.triangle_attributes is None else mesh.triangle_attributes.shape[1]
-    m = len(triangles)
-    yield f"{m} {_CORNERS} {attributes}\n"
-    columns = [np.arange(mesh.base, mesh.base + m), triangles + np.int64(mesh.base), mesh.triangle_attributes]
+    yield from elements_text(triangles, mesh.triangle_attributes, mesh.base)
+
+
+def elements_text(nodes: IntArray, attributes: FloatArray | None, base: int) -> Iterator[str]:
+    """Yield the text of a ``.ele`` file of elements with three or six nodes (m, 3 or 6), counted from 0."""
+    m, width = nodes.shape
+    yield f"{m} {width} {0 if attributes is None else attributes.shape[1]}\n"
+    columns = [np.arange(base, base + m), nodes + np.int64(base), attributes]
     yield from rows_of_text(column for column in columns if column is not None)

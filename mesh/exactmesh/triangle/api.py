@@ -13,9 +13,8 @@ from exactmesh.triangle.dictionary import TriangleDict, given_of
 from exactmesh.triangle.errors import TriangleWarning
 from exactmesh.triangle.graph import hull_edges
 from exactmesh.triangle.result import dictionary_of
-from exactmesh.triangle.solve import Solution, Unsuitable, origin_of, solve
+from exactmesh.triangle.solve import Unsuitable, answered, origin_of
 from exactmesh.triangle.switches import MEANINGS, Switch, parse
-from exactmesh.verify import verify
 from exactmesh.voronoi import circumcentres, dual_edges
 
 __all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
@@ -63,24 +62,11 @@ def triangulate(
     """
     switches = parse(opts)
     given = given_of(tri)
-    solution = solve(given, switches, unsuitable, progress)
-    if switches.asks(Switch.CHECK):
-        _check(solution)
+    solution = answered(given, switches, unsuitable, progress)
     only_files = (f"{s}: {MEANINGS[s]}" for s in (Switch.VORONOI, Switch.GEOMVIEW) if switches.asks(s))
     for note in (*switches.notes(), *only_files, *solution.notes):
         warnings.warn(note, TriangleWarning, stacklevel=2)
     return dictionary_of(given, switches, solution)
-
-
-def _check(solution: Solution) -> None:
-    """Have the verifier look at the result; it raises what it finds."""
-    mesh = solution.mesh
-    if mesh.pslg is None:
-        verify(mesh.points, mesh.triangles).raise_if_failed()
-    elif mesh.domain is None:
-        verify(mesh.points, mesh.triangles, claims=["admissible"]).raise_if_failed()
-    else:
-        verify(mesh.points, mesh.triangles, domain=mesh.domain).raise_if_failed()
 
 
 def delaunay(pts: npt.ArrayLike) -> IntArray:

@@ -53,6 +53,10 @@ class GivenMesh:
         place[number[: len(mine)]] = np.arange(len(mine), dtype=np.int32)
         same = place[number[len(mine) :]]
         found: IntArray = np.where(same >= 0, same, at_centre)
+        for corner in mesh.triangles.T:  # slim as it is, its centroid was rounded out of the domain
+            lost = np.flatnonzero(found < 0)
+            if lost.size:
+                found[lost] = self.given.locate(mesh.points[corner[lost]])
         return found
 
     def unchanged(self) -> Triangulation:

@@ -20,8 +20,9 @@ from exactmesh.triangle.given_mesh import GivenMesh, given_mesh
 from exactmesh.triangle.graph import graph_of, hull_edges, solved
 from exactmesh.triangle.switches import Switch, Switches
 from exactmesh.triangulation import Triangulation
+from exactmesh.verify import verify
 
-__all__ = ["Solution", "Unsuitable", "origin_of", "solve"]
+__all__ = ["Solution", "Unsuitable", "answered", "origin_of"]
 
 #: Tells which triangles are too large: (corners (k, 3, 2), areas (k,)) -> bool (k,).
 Unsuitable: TypeAlias = Callable[[FloatArray, FloatArray], npt.ArrayLike]
@@ -46,10 +47,23 @@ class Solution:
     notes: list[str] = field(default_factory=list)
 
 
-def solve(
+def answered(
     given: Given, switches: Switches, unsuitable: Unsuitable | None = None, progress: Progress | None = None
 ) -> Solution:
-    """Triangulate, and refine, as the switches say."""
+    """Triangulate, refine, and check, as the switches say.
+
+    Raises:
+        SwitchError: the switches ask for something that is not given.
+        VerificationError: C was asked, and the verifier finds a fault.
+        ExactMeshError: what :func:`exactmesh.triangle.triangulate` raises.
+    """
+    solution = _solution(given, switches, unsuitable, progress)
+    if switches.asks(Switch.CHECK):
+        _check(solution)
+    return solution
+
+
+def _solution(given: Given, switches: Switches, unsuitable: Unsuitable | None, progress: Progress | None) -> Solution:
     if switches.asks(Switch.UNSUITABLE) and unsuitable is None:
         raise SwitchError(
             "which triangles are too large? Give triangulate a function unsuitable=",
@@ -70,6 +84,17 @@ def solve(
     mesh = solved(graph_of(given, switches, hull), task.of_graph, task.notes)
     attributes = mesh.triangle_attributes if switches.asks(Switch.ATTRIBUTES) else np.zeros((len(mesh.triangles), 0))
     return Solution(mesh, origin_of(mesh, len(given.vertices)), attributes, task.notes)
+
+
+def _check(solution: Solution) -> None:
+    """Have the verifier look at the result; it raises what it finds."""
+    mesh = solution.mesh
+    if mesh.pslg is None:
+        verify(mesh.points, mesh.triangles).raise_if_failed()
+    elif mesh.domain is None:
+        verify(mesh.points, mesh.triangles, claims=["admissible"]).raise_if_failed()
+    else:
+        verify(mesh.points, mesh.triangles, domain=mesh.domain).raise_if_failed()
 
 
 def _of_triangles(given: Given, task: "_Task") -> Solution:
