@@ -8,16 +8,25 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.io.model import Mesh
 from exactmesh.io.text import TextFile, rows_of_text
 
-__all__ = ["ele_text", "elements_text", "read_ele"]
+__all__ = ["ele_text", "elements_text", "read_ele", "read_elements"]
 
 _CORNERS = 3
 
 
 def read_ele(path: str | TextFile, points: int, base: int) -> tuple[IntArray, FloatArray]:
-    """Return the corners (m, 3), counted from 0, and attributes (m, b) of a ``.ele`` file.
+    """Return the corners (m, 3), counted from 0, and attributes (m, b) of a ``.ele`` file; see :func:`read_elements`.
+
+    Of six-node elements the corners are kept; the midpoints remain as points.
+    """
+    nodes, attributes = read_elements(path, points, base)
+    return np.ascontiguousarray(nodes[:, :_CORNERS]), attributes
+
+
+def read_elements(path: str | TextFile, points: int, base: int) -> tuple[IntArray, FloatArray]:
+    """Return the nodes (m, 3) or (m, 6), counted from 0, and attributes (m, b) of a ``.ele`` file.
 
     Header ``N nodes_per_triangle attributes`` (missing fields: 3, 0), then N rows ``i n1 n2 n3 ...
-    attributes...``. Of six-node elements the corners are kept; the midpoints remain as points. Linear time.
+    attributes...``; nodes 4 to 6 are the midpoints opposite to corners 1 to 3. Linear time.
 
     Raises:
         FileFormatError: where and what.
@@ -30,7 +39,7 @@ def read_ele(path: str | TextFile, points: int, base: int) -> tuple[IntArray, Fl
     rows = file.table(file.row_type(count, "triangle", integers=nodes, attributes=attributes), count)
     file.numbered(rows["number"], base, "triangle")
     file.in_range(rows["integers"], base, base + points - 1, "point")
-    return (rows["integers"][:, :_CORNERS] - base).astype(np.int32), rows["attributes"]
+    return (rows["integers"] - base).astype(np.int32), rows["attributes"]
 
 
 def ele_text(mesh: Mesh) -> Iterator[str]:

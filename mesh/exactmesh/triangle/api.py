@@ -61,7 +61,7 @@ def triangulate(
 [1, 1, 1, 1])
     """
     switches = parse(opts)
-    given = given_of(tri)
+    given = given_of(tri, refines=switches.asks(Switch.REFINE))
     solution = answered(given, switches, unsuitable, progress)
     only_files = (f"{s}: {MEANINGS[s]}" for s in (Switch.VORONOI, Switch.GEOMVIEW) if switches.asks(s))
     for note in (*switches.notes(), *only_files, *solution.notes):

@@ -15,7 +15,7 @@ from exactmesh.io.area import read_areas
 from exactmesh.io.atomic import Writer, text_writer, write_whole
 from exactmesh.io.dual import voronoi_writers
 from exactmesh.io.edge import edge_text
-from exactmesh.io.ele import elements_text
+from exactmesh.io.ele import elements_text, read_elements
 from exactmesh.io.files import read_points, read_triangles
 from exactmesh.io.model import Mesh
 from exactmesh.io.neigh import neigh_text
@@ -64,8 +64,9 @@ def run_switches(text: str, source: str, output: str | None) -> Iterator[str]:
     base = 0 if switches.asks(Switch.ZERO) else base
     with working("triangulating", compiling=_has_to_compile(switches)) as progress:
         solution = _solved(given, switches, progress, source, base)
-    found = dictionary_of(given, replace(switches, given=switches.given - _SUPPRESSED), solution)
-    writers = _writers(target, found, switches, solution, base)
+    written = _written(target, switches)
+    found = dictionary_of(given, replace(written, given=written.given - _SUPPRESSED), solution)
+    writers = _writers(target, found, written, solution, base)
     overwritten = {os.path.realpath(path) for path in writers} & {os.path.realpath(path) for path in read}
     if overwritten:
         raise FileFormatError("is an input, and would be overwritten: give -o", path=min(overwritten))
@@ -99,12 +100,11 @@ def _target(source: str, output: str | None, switches: Switches) -> str:
 
 def _read(stem: str, switches: Switches) -> tuple[Given, int, list[str]]:
     """Return what Triangle would read with these switches, what it counts from, and the names of the files."""
-    read = [stem + ".node"]
+    read, triangles = [stem + ".node"], None
     if switches.asks(Switch.REFINE):
         read.append(stem + ".ele")
-        mesh = read_triangles(stem + ".ele")
-        if mesh.triangles is None:
-            raise FileFormatError("no such file, and r refines triangles", path=stem + ".ele")
+        mesh = read_triangles(stem + ".node")
+        triangles = read_elements(stem + ".ele", len(mesh.points), mesh.base)[0]
         if switches.asks(Switch.PSLG):
             read.append(stem + ".poly")
     elif switches.asks(Switch.PSLG):
@@ -122,7 +122,7 @@ def _read(stem: str, switches: Switches) -> tuple[Given, int, list[str]]:
         "vertices": mesh.points,
         "vertex_attributes": mesh.point_attributes,
         "vertex_markers": mesh.point_markers,
-        "triangles": mesh.triangles,
+        "triangles": triangles,
         "triangle_attributes": mesh.triangle_attributes,
         "triangle_max_area": areas,
         "segments": mesh.segments,
@@ -130,7 +130,7 @@ def _read(stem: str, switches: Switches) -> tuple[Given, int, list[str]]:
         "holes": mesh.holes,
         "regions": mesh.regions,
     }
-    return given_of(content), mesh.base, read
+    return given_of(content, refines=switches.asks(Switch.REFINE)), mesh.base, read
 
 
 def _solved(given: Given, switches: Switches, progress: Progress, source: str, base: int) -> Solution:
@@ -164,6 +164,13 @@ def _mesh_of(found: TriangleDict, switches: Switches, base: int) -> Mesh:
     )
 
 
+def _written(stem: str, switches: Switches) -> Switches:
+    """Return the switches, with those for files that would else be left there from another mesh."""
+    more = {Switch.EDGES: ".edge", Switch.NEIGHBORS: ".neigh"}
+    stale = {switch for switch, suffix in more.items() if os.path.exists(stem + suffix)}
+    return replace(switches, given=switches.given | stale)
+
+
 def _writers(stem: str, found: TriangleDict, switches: Switches, solution: Solution, base: int) -> dict[str, Writer]:
     """Return what writes each file that the switches ask for."""
     mesh = _mesh_of(found, switches, base)
@@ -174,7 +181,8 @@ def _writers(stem: str, found: TriangleDict, switches: Switches, solution: Solut
         writers[stem + ".node"] = text_writer(lambda: node_text(mesh))
     if not switches.asks(Switch.NO_ELEMENTS):
         writers[stem + ".ele"] = text_writer(lambda: elements_text(triangles, attributes, base))
-    if switches.asks(Switch.PSLG, Switch.CONVEX) and not switches.asks(Switch.NO_POLY):
+    old = os.path.exists(stem + ".poly") and not has_points(stem + ".poly")  # of another mesh, that would be read
+    if old or (switches.asks(Switch.PSLG, Switch.CONVEX) and not switches.asks(Switch.NO_POLY)):
         writers[stem + ".poly"] = text_writer(lambda: segments_text(mesh))
     if switches.asks(Switch.EDGES):
         writers[stem + ".edge"] = text_writer(lambda: edge_text(mesh))

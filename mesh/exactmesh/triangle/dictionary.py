@@ -1,7 +1,7 @@
 """The dictionaries of the ``triangle`` package: what comes in is checked, what goes out has its keys and types."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypedDict, TypeVar, cast
 
 import numpy as np
@@ -61,7 +61,10 @@ KEYS: tuple[str, ...] = tuple(TriangleDict.__annotations__)
 
 @dataclass(frozen=True)
 class Given:
-    """A dictionary that was checked; arrays as in :class:`TriangleDict`, markers int64 (k,), areas (m,)."""
+    """A dictionary that was checked; arrays as in :class:`TriangleDict`, markers int64 (k,), areas (m,).
+
+    Of six nodes a triangle, the corners are there.
+    """
 
     vertices: FloatArray
     vertex_attributes: FloatArray | None
@@ -75,8 +78,10 @@ class Given:
     regions: FloatArray
 
 
-def given_of(tri: Mapping[str, object]) -> Given:
+def given_of(tri: Mapping[str, object], *, refines: bool = False) -> Given:
     """Check a dictionary; keys with nothing in them are as good as none.
+
+    If its triangles are to be refined and have six nodes, vertices that are only midpoints are left out.
 
     Raises:
         ChoiceError: a key that there is not, or no vertices.
@@ -90,21 +95,41 @@ def given_of(tri: Mapping[str, object]) -> Given:
     content = {key: array_of(cast(npt.ArrayLike, value), key) for key, value in tri.items() if value is not None}
     content = {key: array for key, array in content.items() if array.size}
     points = finite_points(content.get("vertices", ()), "vertices")
-    triangles = _read(content, "triangles", _corners)
+    triangles = _read(content, "triangles", _nodes)
     segments = _read(content, "segments", _pairs)
     n, s = len(points), 0 if segments is None else len(segments)
     m = None if triangles is None else len(triangles)
-    return Given(
+    given = Given(
         points,
         rows_for(_read(content, "vertex_attributes", _attributes), "vertex_attributes", n),
         rows_for(_read(content, "vertex_markers", column), "vertex_markers", n),
-        triangles,
+        None if triangles is None else triangles[:, :3],
         rows_for(_read(content, "triangle_attributes", _attributes), "triangle_attributes", m),
         rows_for(_read(content, "triangle_max_area", _areas), "triangle_max_area", m),
         np.zeros((0, 2), dtype=np.int64) if segments is None else segments,
         rows_for(_read(content, "segment_markers", column), "segment_markers", s),
         finite_points(content.get("holes", ()), "holes"),
         regions_of(content.get("regions"), "regions"),
+    )
+    return given if triangles is None or not refines else _without(given, triangles[:, 3:])
+
+
+def _without(given: Given, middles: MarkerArray) -> Given:
+    """Leave out vertices that are only midpoints."""
+    assert given.triangles is not None
+    n = len(given.vertices)
+    dropped = np.setdiff1d(middles, np.union1d(given.triangles, given.segments))
+    if dropped.size == 0 or dropped[0] < 0 or dropped[-1] >= n or given.triangles.max() >= n:
+        return given  # what is wrong with the numbers will be said
+    kept = np.delete(np.arange(n), dropped)
+    number = np.cumsum(np.isin(np.arange(n), kept)) - 1
+    return replace(
+        given,
+        vertices=given.vertices[kept],
+        vertex_attributes=None if given.vertex_attributes is None else given.vertex_attributes[kept],
+        vertex_markers=None if given.vertex_markers is None else given.vertex_markers[kept],
+        triangles=number[given.triangles],
+        segments=number[given.segments],
     )
 
 
@@ -147,11 +172,11 @@ def _pairs(values: npt.ArrayLike, name: str) -> MarkerArray:
     return array
 
 
-def _corners(values: npt.ArrayLike, name: str) -> MarkerArray:
+def _nodes(values: npt.ArrayLike, name: str) -> MarkerArray:
     array = _whole(values, name)
     if array.ndim != 2 or array.shape[1] not in _CORNERS:
         raise ShapeError(f"{name} has shape {array.shape}; expected (m, 3), or (m, 6) from o2")
-    return array[:, :3]
+    return array
 
 
 def _attributes(values: npt.ArrayLike, name: str) -> FloatArray:

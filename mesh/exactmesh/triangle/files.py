@@ -10,7 +10,7 @@ import numpy.typing as npt
 from exactmesh.errors import FileFormatError
 from exactmesh.io.area import read_area
 from exactmesh.io.edge import read_edge
-from exactmesh.io.ele import read_ele
+from exactmesh.io.ele import read_elements
 from exactmesh.io.model import Mesh
 from exactmesh.io.neigh import read_neigh
 from exactmesh.io.node import node_header, read_node
@@ -83,10 +83,10 @@ def _dictionary(files: Mapping[str, TextFile]) -> TriangleDict:
         "regions": mesh.regions,
     }
     if "ele" in files:
-        triangles, attributes = read_ele(files["ele"], n, base)
+        triangles, attributes = read_elements(files["ele"], n, base)
         found |= {"triangles": triangles, "triangle_attributes": attributes}
         if "neigh" in files:
-            found["neighbors"] = read_neigh(files["neigh"], triangles, base)
+            found["neighbors"] = read_neigh(files["neigh"], triangles[:, :3], base)
     elif "neigh" in files:
         raise files["neigh"].fault("needs the triangles of an .ele file")
     if "edge" in files:
