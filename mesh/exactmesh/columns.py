@@ -118,7 +118,7 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
     if array is None:
         return None
     if len(array) != count:
-        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments"}[name[0]]
+        of = {"p": "points", "v": "vertices", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments"}[name[0]]
         raise ShapeError(f"{name} has {len(array)} rows for {'no' if count is None else count} {of}")
     return array
 

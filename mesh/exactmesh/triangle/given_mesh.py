@@ -124,7 +124,7 @@ def _new(boundary: IntArray, segments: MarkerArray) -> MarkerArray:
 
 
 def _check_admissible(given: Given, corners: MarkerArray, with_segments: bool) -> None:
-    claims = [Property.ADMISSIBLE, *([Property.SEGMENTS_PRESENT] if with_segments else [])]
+    claims = [Property.ORIENTATION, Property.ADMISSIBLE, *([Property.SEGMENTS_PRESENT] if with_segments else [])]
     segments = given.segments if with_segments else None
     report = verify(given.vertices, corners, segments=segments, claims=claims)
     if not report.ok:
