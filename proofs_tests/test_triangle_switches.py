@@ -3,6 +3,7 @@
 import re
 import warnings
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import example, given
@@ -91,7 +92,10 @@ class TestGrammar:
         assert read_naively(text) is None
 
     def test_every_switch_has_a_meaning(self) -> None:
-        assert set(MEANINGS) == set(Switch)
+        """The table of the documentation is that of the library."""
+        page = (Path(__file__).parents[1] / "docs" / "triangle.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| `([A-Za-z])` \| ([^|]*) \|$", page, re.MULTILINE)
+        assert rows == [(switch.value, MEANINGS[switch]) for switch in Switch]
 
 
 TRAPS = [
