@@ -130,14 +130,11 @@ def _markers(given: Given, solution: Solution) -> MarkerArray:
 
 def _edges_opposite(mesh: Triangulation) -> IntArray:
     """Return the row in ``mesh.edges`` of the edge opposite each corner, (m, 3)."""
-    keys = _keys(mesh.edges)
-    order = np.argsort(keys)
-    ends = np.stack([np.roll(mesh.triangles, -1, axis=1), np.roll(mesh.triangles, -2, axis=1)], axis=-1)
-    wanted = _keys(ends.reshape(-1, 2)).reshape(-1, 3)
-    rows: IntArray = order[np.searchsorted(keys, wanted, sorter=order)].astype(np.int32)
+    neighbors = mesh.neighbors
+    own = np.arange(len(neighbors), dtype=np.int32)[:, None] > neighbors  # the edges are listed by these triangles
+    rows = np.empty(neighbors.shape, dtype=np.int32)
+    rows[own] = np.arange(len(mesh.edges), dtype=np.int32)
+    t, i = np.nonzero(~own)
+    u = neighbors[t, i]
+    rows[t, i] = rows[u, (neighbors[u] == t[:, None]).argmax(axis=1)]
     return rows
-
-
-def _keys(edges: IntArray) -> MarkerArray:
-    keys: MarkerArray = edges.min(axis=1).astype(np.int64) << 32 | edges.max(axis=1)
-    return keys

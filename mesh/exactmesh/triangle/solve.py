@@ -1,7 +1,7 @@
 """From a dictionary and switches to a triangulation: which of the library's functions answers."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -72,16 +72,19 @@ def _solution(given: Given, switches: Switches, unsuitable: Unsuitable | None, p
     task = _Task(switches, unsuitable, progress, [])
     if switches.asks(Switch.REFINE):
         return _of_triangles(given, task)
-    if not (switches.refines or switches.asks(Switch.PSLG, Switch.CONVEX)):
+    if not (switches.refines or switches.asks(Switch.PSLG)):
         mesh = delaunay(given.vertices, progress=progress)
+        if switches.asks(Switch.CONVEX):
+            hull = hull_edges(mesh.hull, np.arange(len(mesh.points))).astype(np.int32)
+            mesh = replace(mesh, segments=hull, segment_markers=np.ones(len(hull), dtype=np.int64))
         return Solution(mesh, origin_of(mesh, len(given.vertices)), mesh.triangle_attributes)
-    hull = np.zeros((0, 2), dtype=np.int64)
+    added = np.zeros((0, 2), dtype=np.int64)
     if switches.asks(Switch.CONVEX) or not switches.asks(Switch.PSLG):
         whole = delaunay(given.vertices)
-        hull = hull_edges(whole.hull, origin_of(whole, len(given.vertices)))
+        added = hull_edges(whole.hull, origin_of(whole, len(given.vertices)))
     elif switches.local_areas and not len(given.regions):
         task.notes.append("a without a number takes the areas of regions, and there are none: no area is bounded by it")
-    mesh = solved(graph_of(given, switches, hull), task.of_graph, task.notes)
+    mesh = solved(graph_of(given, switches, added), task.of_graph, task.notes)
     attributes = mesh.triangle_attributes if switches.asks(Switch.ATTRIBUTES) else np.zeros((len(mesh.triangles), 0))
     return Solution(mesh, origin_of(mesh, len(given.vertices)), attributes, task.notes)
 
@@ -102,16 +105,15 @@ def _of_triangles(given: Given, task: "_Task") -> Solution:
     start = given_mesh(given, task.switches, task.notes)
     if not task.switches.refines:
         mesh = start.unchanged()
-        source = np.arange(len(mesh.triangles), dtype=np.int32)
     else:
         begin = start.delaunay()
         mesh = task.refined(begin, _areas(given, task.switches, start, begin))
-        source = start.source(mesh)
     of_vertex = origin_of(mesh, len(start.used))
     origin = np.where(of_vertex >= 0, start.used[of_vertex], -1)
     attributes = given.triangle_attributes
     if attributes is None:
         return Solution(mesh, origin, np.zeros((len(mesh.triangles), 0)), task.notes)
+    source = start.source(mesh)
     found = np.where((source >= 0)[:, None], attributes[source], 0.0)
     return Solution(mesh, origin, found, task.notes)
 
