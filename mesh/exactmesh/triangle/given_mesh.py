@@ -84,28 +84,24 @@ def given_mesh(given: Given, switches: Switches, notes: list[str]) -> GivenMesh:
     if corners is None:
         raise ChoiceError("r refines triangles, and the dictionary has no 'triangles': leave r out, or give them")
     _check_range("triangles", corners, n)
-    _check_range("segments", given.segments, n)
-    with_segments = switches.asks(Switch.PSLG)
-    named = [corners.reshape(-1), given.segments.reshape(-1)] if with_segments else [corners.reshape(-1)]
-    used = np.unique(np.concatenate(named))
-    points = given.vertices[used]
-    _check_admissible(given, corners, with_segments)
-    mesh = _plain(points, np.searchsorted(used, corners).astype(np.int32))
-    boundary = boundary_edges(mesh.triangles, mesh.neighbors)
     segments, markers = np.zeros((0, 2), dtype=np.int64), None
-    if with_segments:
-        segments, markers = np.searchsorted(used, given.segments), given.segment_markers
-    edges = np.concatenate([segments, _new(boundary, segments)])
+    if switches.asks(Switch.PSLG):
+        segments, markers = given.segments, given.segment_markers
+        _check_range("segments", segments, n)
+    _check_admissible(given.vertices, corners, segments)
+    used = np.union1d(corners, segments)
+    mesh = _plain(given.vertices[used], np.searchsorted(used, corners).astype(np.int32))
+    segments = np.searchsorted(used, segments)
+    added = _new(boundary_edges(mesh.triangles, mesh.neighbors), segments)
     if markers is not None:
-        markers = np.concatenate([markers, np.zeros(len(edges) - len(segments), dtype=np.int64)])
-    attributes, of_vertex = given.vertex_attributes, given.vertex_markers
-    part = Given(
-        points,
-        None if attributes is None else attributes[used],
-        None if of_vertex is None else of_vertex[used],
-        None, None, None, edges, None, np.zeros((0, 2)), np.zeros((0, 4)),
-    )  # fmt: skip
-    graph = Graph(part, edges, markers, _holes(mesh), np.zeros((0, 4)))
+        markers = np.concatenate([markers, np.zeros(len(added), dtype=np.int64)])
+    part = replace(
+        given,
+        vertices=mesh.points,
+        vertex_attributes=None if given.vertex_attributes is None else given.vertex_attributes[used],
+        vertex_markers=None if given.vertex_markers is None else given.vertex_markers[used],
+    )
+    graph = Graph(part, np.concatenate([segments, added]), markers, _holes(mesh), np.zeros((0, 4)))
     return GivenMesh(mesh, used, solved(graph, lambda pslg: pslg, notes))
 
 
@@ -123,10 +119,9 @@ def _new(boundary: IntArray, segments: MarkerArray) -> MarkerArray:
     return turned[~np.isin(keys, known)]
 
 
-def _check_admissible(given: Given, corners: MarkerArray, with_segments: bool) -> None:
-    claims = [Property.ORIENTATION, Property.ADMISSIBLE, *([Property.SEGMENTS_PRESENT] if with_segments else [])]
-    segments = given.segments if with_segments else None
-    report = verify(given.vertices, corners, segments=segments, claims=claims)
+def _check_admissible(points: FloatArray, corners: MarkerArray, segments: MarkerArray) -> None:
+    claims = (Property.ORIENTATION, Property.ADMISSIBLE, Property.SEGMENTS_PRESENT)
+    report = verify(points, corners, segments=segments, claims=claims)
     if not report.ok:
         fault = report.violations[0]
         raise InadmissibleError(

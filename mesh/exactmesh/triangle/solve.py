@@ -82,9 +82,10 @@ def _solution(given: Given, switches: Switches, unsuitable: Unsuitable | None, p
     if switches.asks(Switch.CONVEX) or not switches.asks(Switch.PSLG):
         whole = delaunay(given.vertices)
         added = hull_edges(whole.hull, origin_of(whole, len(given.vertices)))
-    elif switches.local_areas and not len(given.regions):
+    graph = graph_of(given, switches, added)
+    if switches.local_areas and not len(graph.regions):
         task.notes.append("a without a number takes the areas of regions, and there are none: no area is bounded by it")
-    mesh = solved(graph_of(given, switches, added), task.of_graph, task.notes)
+    mesh = solved(graph, task.of_graph, task.notes)
     attributes = mesh.triangle_attributes if switches.asks(Switch.ATTRIBUTES) else np.zeros((len(mesh.triangles), 0))
     return Solution(mesh, origin_of(mesh, len(given.vertices)), attributes, task.notes)
 
