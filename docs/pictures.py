@@ -1,29 +1,78 @@
 """Draws the pictures of the README and of the site: ``python docs/pictures.py``, with the extra ``plot``."""
 
 import tempfile
+import warnings
 from pathlib import Path
 
 import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from PIL import Image  # comes with matplotlib
 
-from exactmesh import PSLG, Triangulation, constrained_delaunay, delaunay, refine
+from exactkernel.types import FloatArray
+from exactmesh import PSLG, Triangulation, constrained_delaunay, delaunay, refine, triangle
 from exactmesh.demo import course_points, lake, mosaic
+from exactmesh.plane import BoolArray
 from exactmesh.plot import plot_mesh
 
 HERE = Path(__file__).resolve().parent / "_static"
 
 
+def shrink(large: Path, name: str, width: int) -> None:
+    """Save a picture with few colours, few pixels, few bytes."""
+    with Image.open(large) as picture:
+        height = round(picture.height * width / picture.width)
+        small = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
+    small.quantize(32, method=Image.Quantize.MEDIANCUT).save(HERE / f"{name}.png", optimize=True)
+
+
 def draw(name: str, mesh: Triangulation, title: str, *, width: int) -> None:
-    """Draw a triangulation, then shrink it: few colours, few pixels, few bytes."""
+    """Draw a triangulation, then shrink it."""
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / f"{name}.png"
         plot_mesh(
             mesh.points, mesh.triangles, large, segments=mesh.segments if len(mesh.segments) else None, title=title
         )
-        with Image.open(large) as picture:
-            height = round(picture.height * width / picture.width)
-            small = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
-    small.quantize(32, method=Image.Quantize.MEDIANCUT).save(HERE / f"{name}.png", optimize=True)
+        shrink(large, name, width)
+
+
+def near_a_point(corners: FloatArray, areas: FloatArray) -> BoolArray:
+    """Tell which triangles are too large for the course: small ones are wanted near (0.1, 0.1)."""
+    off = corners.mean(axis=1) - 0.1
+    large: BoolArray = areas > 0.001 * np.exp(50.0 * (off**2).sum(axis=1))
+    return large
+
+
+def draw_calls(name: str, *, width: int) -> None:
+    """Draw inputs beside outputs: the course's five calls, and a letter; with v, the Voronoi diagram over them."""
+    calls = (("triangle", ""), ("polygon", "pv"), ("polygon", "pvD"), ("polygon", "pa0.1"), ("polygon", "pa0.1u"))
+    figure = Figure(figsize=(12, 9.4), dpi=150, layout="constrained")
+    axes = iter(figure.subplots(3, 4).reshape(-1))
+    for data, switches in (*calls, ("A", "pq30a0.01")):
+        given = triangle.get_data(data)
+        with warnings.catch_warnings(action="ignore"):  # v is for files
+            found = triangle.triangulate(given, switches, unsuitable=near_a_point if "u" in switches else None)
+        before, after = next(axes), next(axes)
+        triangle.plot(before, **given)
+        triangle.plot(after, **found)
+        if "v" in switches:
+            limits = after.axis()
+            centres, edges, origins, directions = triangle.voronoi(found["vertices"])
+            over = LineCollection(centres[edges], colors="#2a9d6f", linewidths=1.1, linestyles="dashed")
+            after.add_collection(over)
+            rays = np.stack([centres[origins], centres[origins] + 9.0 * directions], axis=1)
+            after.add_collection(LineCollection(rays, colors="#2a9d6f", linewidths=1.1, linestyles="dashed"))
+            after.axis(limits)
+        before.set_title(f"{data}: {len(given['vertices'])} vertices", fontsize=10)
+        after.set_title(
+            f'"{switches}": {len(found["vertices"])} vertices, {len(found["triangles"])} triangles', fontsize=10
+        )
+    for one in figure.axes:
+        one.set_axis_off()
+    with tempfile.TemporaryDirectory() as folder:
+        large = Path(folder) / f"{name}.png"
+        figure.savefig(large)
+        shrink(large, name, width)
 
 
 def shores() -> PSLG:
@@ -54,3 +103,4 @@ if __name__ == "__main__":
     borders = county("Los Angeles")
     draw("county", refine(borders, min_angle=30).triangulation, "Los Angeles County, refined to 30 degrees", width=880)
     draw("lake", constrained_delaunay(lake(), crossings="split"), "A lake, islands, and dikes that cross", width=880)
+    draw_calls("calls", width=1000)

@@ -505,20 +505,20 @@ class TestTheCommandItself:
             raise KeyboardInterrupt
 
         write("m.node", Mesh(SQUARE))
-        monkeypatch.setattr(cli, "_require_file", interrupted)
+        monkeypatch.setattr(cli, "require_file", interrupted)
         assert complaint(capsys, "info", "m.node", code=130) == "exactmesh: interrupted\n"
 
     def test_a_fault_of_ours_is_not_hidden(self, monkeypatch: pytest.MonkeyPatch) -> None:
         def broken(_path: str) -> None:
             raise ValueError("a bug")
 
-        monkeypatch.setattr(cli, "_require_file", broken)
+        monkeypatch.setattr(cli, "require_file", broken)
         with pytest.raises(ValueError, match="a bug"):
             main(["info", "m.node"])
 
     @pytest.mark.skipif(shutil.which("sh") is None, reason="signals as POSIX has them")
     def test_ctrl_c_in_a_process(self, inside: Path) -> None:
-        code = "import os, signal, sys; from exactmesh import cli; cli._require_file = lambda path: "
+        code = "import os, signal, sys; from exactmesh import cli; cli.require_file = lambda path: "
         code += "os.kill(os.getpid(), signal.SIGINT); sys.exit(cli.main(['info', 'm.node']))"
         done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "exactmesh: interrupted\n")
