@@ -284,7 +284,7 @@ class _Reader:
         if switch is Switch.AREA and value == 0.0:
             self.fail("an area must be greater than 0", start, self.at)
         if switch is Switch.QUALITY and value > MAX_ANGLE:
-            self.fail(f"no mesh has all angles so large: ask for {MAX_ANGLE:g} at most", start, self.at)
+            self.fail(f"more than refinement can promise: ask for {MAX_ANGLE:g} at most", start, self.at)
         if switch is Switch.STEINER and not number[0].isdigit():
             self.fail("a number of vertices is an integer", start, self.at)
         return value
