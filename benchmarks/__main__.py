@@ -1,4 +1,4 @@
-"""``python -m benchmarks delaunay|constrained|verify [--quick] [--rounds N]``."""
+"""``python -m benchmarks delaunay|constrained|refine|verify [--quick] [--rounds N]``."""
 
 import os
 
@@ -10,6 +10,7 @@ import typer
 
 from benchmarks import constrained as constrained_benchmark
 from benchmarks import delaunay as delaunay_benchmark
+from benchmarks import refine as refine_benchmark
 from benchmarks import verify as verify_benchmark
 
 app = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
@@ -28,6 +29,12 @@ def delaunay(quick: Quick = False, rounds: Rounds = 5) -> None:
 def constrained(quick: Quick = False, rounds: Rounds = 5) -> None:
     """Race the constrained meshers on graphs; crossings and their growth."""
     constrained_benchmark.run(quick=quick, rounds=rounds)
+
+
+@app.command()
+def refine(quick: Quick = False, rounds: Rounds = 5) -> None:
+    """Race the refiners on domains; growth, and Python callbacks."""
+    refine_benchmark.run(quick=quick, rounds=rounds)
 
 
 @app.command()

@@ -7,7 +7,7 @@ import numpy as np
 
 from exactkernel.types import FloatArray, IntArray
 
-__all__ = ["GRAPHS", "Graph", "graph_of"]
+__all__ = ["GRAPHS", "Graph", "county_rings", "cycle", "graph_of", "graph_of_rings"]
 
 
 class Graph(NamedTuple):
@@ -18,7 +18,8 @@ class Graph(NamedTuple):
     closed: bool
 
 
-def _cycle(n: int) -> IntArray:
+def cycle(n: int) -> IntArray:
+    """Return the segments of a ring of points in their order."""
     start = np.arange(n, dtype=np.int32)
     return np.stack([start, np.roll(start, -1)], axis=1)
 
@@ -27,10 +28,10 @@ def _star(n: int, rng: np.random.Generator) -> Graph:
     """A star-shaped polygon: every segment crosses what would be edges without it."""
     angle, radius = np.sort(rng.random(n)) * 2.0 * np.pi, 0.5 + 0.5 * rng.random(n)
     points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
-    return Graph(points, _cycle(n), closed=True)
+    return Graph(points, cycle(n), closed=True)
 
 
-def _rings() -> list[FloatArray]:
+def county_rings() -> list[FloatArray]:
     """The outlines of all US counties."""
     from bokeh_sampledata import us_counties
 
@@ -42,16 +43,24 @@ def _rings() -> list[FloatArray]:
     return rings
 
 
+def graph_of_rings(rings: list[FloatArray]) -> tuple[Graph, IntArray]:
+    """Return the graph with every point and every edge of the rings once; and rows (ring, segment)."""
+    points, index = np.unique(np.concatenate(rings), axis=0, return_inverse=True)
+    lengths = [len(ring) for ring in rings]
+    ends = np.cumsum(lengths)
+    edges = np.stack([index, np.roll(index, -1)], axis=1)
+    edges[ends - 1, 1] = index[ends - lengths]
+    proper = edges[:, 0] != edges[:, 1]
+    owner = np.repeat(np.arange(len(rings)), lengths)[proper]
+    edges, which = np.unique(np.sort(edges[proper], axis=1), axis=0, return_inverse=True)
+    graph = Graph(points, edges.astype(np.int32), closed=True)
+    return graph, np.stack([owner, which.reshape(-1)], axis=1).astype(np.int32)
+
+
 def _counties(n: int, rng: np.random.Generator) -> Graph:  # noqa: ARG001  # nothing is random here
     """Every point and every border once; some borders cross: n / 260,000 of the rings."""
-    rings = _rings()
-    rings = rings[: max(1, len(rings) * n // _COUNTY_POINTS)]
-    points, index = np.unique(np.concatenate(rings), axis=0, return_inverse=True)
-    ends = np.cumsum([len(ring) for ring in rings])
-    edges = np.stack([index, np.roll(index, -1)], axis=1)
-    edges[ends - 1, 1] = index[ends - [len(ring) for ring in rings]]
-    edges = np.unique(np.sort(edges, axis=1), axis=0)
-    return Graph(points, edges[edges[:, 0] != edges[:, 1]].astype(np.int32), closed=True)
+    rings = county_rings()
+    return graph_of_rings(rings[: max(1, len(rings) * n // _COUNTY_POINTS)])[0]
 
 
 _COUNTY_POINTS = 263_649

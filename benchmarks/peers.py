@@ -25,6 +25,7 @@ class Mesher:
         prepare: points or a graph -> what the timed call takes.
         run: the timed call; returns how many triangles came out.
         note: what exactly is timed.
+        describe: what comes out of one more call, as the cells of a table; None if there is nothing to tell.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Mesher:
     prepare: Callable[[Any], Any]
     run: Callable[[Any], int]
     note: str
+    describe: Callable[[Any], list[str]] | None = None
 
 
 def version_of(package: str) -> str:

@@ -13,12 +13,15 @@ from benchmarks.constraining import CONSTRAINERS
 from benchmarks.graphs import GRAPHS, graph_of
 from benchmarks.inputs import points_of
 from benchmarks.peers import PEERS, Mesher, version_of
+from benchmarks.refining import CALLBACKS, REFINERS
+from benchmarks.refining_cases import CASES, case_of
 from benchmarks.verifying import VERIFIERS
 
 __all__ = ["Outcome", "race"]
 
 _LIMIT_SECONDS = 60.0  # for one call, after which a mesher is out of the race
 _START_SECONDS = 300.0  # for the start, with compilation, conversions and warming up
+_DESCRIBE_SECONDS = 600.0  # for one more call, and looking at what comes out
 
 
 @dataclass
@@ -30,12 +33,14 @@ class Outcome:
         count: what the timed call returned, how many triangles for a mesher.
         bytes_per_point: growth of the process's peak memory over the first full run.
         failure: why there are no times, or "".
+        description: what came out, for meshers that tell.
     """
 
     seconds: list[float] = field(default_factory=list)
     count: int = 0
     bytes_per_point: float = 0.0
     failure: str = ""
+    description: list[str] = field(default_factory=list)
 
     @property
     def median(self) -> float:
@@ -44,10 +49,12 @@ class Outcome:
 
 
 def _mesher(key: str) -> Mesher:
-    return {**PEERS, **VERIFIERS, **CONSTRAINERS}[key]
+    return {**PEERS, **VERIFIERS, **CONSTRAINERS, **REFINERS, **CALLBACKS}[key]
 
 
 def _input(name: str, size: int | None) -> Any:
+    if name in CASES:
+        return case_of(name, size)
     return graph_of(name, size) if name in GRAPHS else points_of(name, size)
 
 
@@ -57,11 +64,14 @@ def _serve(pipe: Connection, key: str, name: str, size: int | None) -> None:
     try:
         mesher.run(mesher.prepare(_input(name, 400)))
         given = _input(name, size)
-        points = given.points if name in GRAPHS else given
+        points = getattr(given, "points", given)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         prepared = mesher.prepare(given)
         pipe.send("ready")
-        while pipe.recv() == "run":
+        while True:
+            if pipe.recv() == "describe":
+                pipe.send(mesher.describe(prepared) if mesher.describe else [])
+                continue
             start = time.perf_counter()
             count = mesher.run(prepared)
             seconds = time.perf_counter() - start
@@ -111,6 +121,15 @@ class _Worker:
                 self.outcome.bytes_per_point = bytes_per_point
             self.outcome.seconds.append(seconds)
 
+    def describe(self) -> None:
+        """Let the mesher tell what comes out."""
+        if not self.outcome.failure:
+            self._pipe.send("describe")
+            answer = self._answer(_DESCRIBE_SECONDS)
+            self.outcome.failure = ""  # the times stay
+            if isinstance(answer, list):
+                self.outcome.description = answer
+
     def stop(self) -> None:
         """End the process."""
         if hasattr(self, "_process"):
@@ -125,5 +144,6 @@ def race(keys: Sequence[str], name: str, *, size: int | None = None, rounds: int
         for worker in workers.values():
             worker.run()
     for worker in workers.values():
+        worker.describe()
         worker.stop()
     return {key: worker.outcome for key, worker in workers.items()}

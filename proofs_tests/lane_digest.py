@@ -11,8 +11,15 @@ import numpy as np
 
 import exactkernel as ek
 from exactkernel import doubledouble, expansions
-from exactkernel.context import bits_of, make_context, scaled_into_window
+from exactkernel.context import bits_of, guarded_context, make_context, scaled_into_window
 from exactkernel.incircle import incircle_perturbed_adaptive
+from exactkernel.shape import (
+    angle_above_adaptive,
+    angle_below_adaptive,
+    angle_bound,
+    area_above_adaptive,
+    length_above_adaptive,
+)
 
 VALUES = (0.0, -0.0, 1.0, -1.0, 0.1, 1.0 + 2.0**-52, 3.0, 2.0**27 + 1.0, -1e16, 2.0**-200, 1e150, 1 / 3, -np.pi)
 POINTS = np.array(
@@ -94,6 +101,22 @@ def predicates() -> dict[str, Digest]:
     return digests
 
 
+def shapes() -> dict[str, Digest]:
+    digest, guarded, context = Digest(), guarded_context(), make_context(POINTS[:16])
+    bounds = [angle_bound(degrees) for degrees in (20.0, 45.0, 90.0, 135.0)]
+    for triple in product(POINTS[[1, 3, 6, 10, 16, 17, 18, 20]].tolist(), repeat=3):
+        if ek.orient2d(*triple) <= 0:
+            continue
+        k = context if all(point in POINTS[:16].tolist() for point in triple) else guarded
+        a, b, c = triple
+        for bound in bounds:
+            digest.add(angle_below_adaptive(k, bound, *a, *b, *c), angle_above_adaptive(k, bound, *a, *b, *c))
+        for limit in (0.5, 1e-9, 0.1):
+            digest.add(area_above_adaptive(k, limit, *a, *b, *c), length_above_adaptive(k, 2 * limit, *a, *b))
+    digest.add(*guarded.counts[0].tolist(), *context.counts[0].tolist())
+    return {"shapes": digest}
+
+
 if __name__ == "__main__":
-    for name, digest in {**transforms(), **expansion_arithmetic(), **predicates()}.items():
+    for name, digest in {**transforms(), **expansion_arithmetic(), **predicates(), **shapes()}.items():
         print(name, digest)

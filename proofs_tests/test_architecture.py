@@ -11,7 +11,10 @@ ROOT = Path(__file__).parents[1]
 KERNEL, MESH = ROOT / "kernel" / "exactkernel", ROOT / "mesh" / "exactmesh"
 
 #: Rooms that talk to people and files: algorithms know nothing of them.
-OUTER_ROOMS = ("io", "plot", "cli", "demo", "progress", "summary", "triangulate_file", "verify_file", "__main__")
+OUTER_ROOMS = (
+    *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
+    *("triangulate_file", "verify_file", "__main__"),
+)
 #: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
 VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")
 #: Where everything comes together.

@@ -243,6 +243,20 @@ class TestVerifyDomains:
         assert main(["verify", "ring.1.ele", "--domain", "ring.geojson"]) == 0
         assert main(["verify", "ring.1.ele", "--domain", "ring.geojson", "--carve", "seeds"]) == 1
 
+    def test_shapes(self, capsys: pytest.CaptureFixture[str]) -> None:
+        bounds = ["--min-angle", "0.001", "--max-angle", "179.999", "--max-area", "1e9"]
+        for where in (["--domain", "lake.poly"], []):
+            assert main(["verify", "lake.1.ele", *where, *bounds]) == 0
+            told = capsys.readouterr().out
+            assert all(re.search(rf"\+ {name} +holds\n", told) for name in ("min_angle", "max_angle", "max_area"))
+            assert main(["verify", "lake.1.ele", *where, "--min-angle", "61"]) == 1
+            assert "less than 61" in capsys.readouterr().out
+            assert main(["verify", "lake.1.ele", *where, "--claim", "admissible", "--max-area", "1e-9"]) == 1
+            expected = verify(LAKE.points, constrained_delaunay(LAKE).triangles, domain=LAKE, claims=["gabriel"]).ok
+            assert main(["verify", "lake.1.ele", *where, "--gabriel"]) == (0 if expected else 1)
+            assert "gabriel" in capsys.readouterr().out
+        assert "between 0 and 180" in complaint(capsys, "verify", "lake.1.ele", "--min-angle", "200")
+
     def test_control_another_mesh_is_no_triangulation_of_the_domain(self) -> None:
         mesh = read("lake.1.ele")
         assert mesh.triangles is not None
@@ -491,20 +505,20 @@ class TestTheCommandItself:
             raise KeyboardInterrupt
 
         write("m.node", Mesh(SQUARE))
-        monkeypatch.setattr(cli, "_require_file", interrupted)
+        monkeypatch.setattr(cli, "require_file", interrupted)
         assert complaint(capsys, "info", "m.node", code=130) == "exactmesh: interrupted\n"
 
     def test_a_fault_of_ours_is_not_hidden(self, monkeypatch: pytest.MonkeyPatch) -> None:
         def broken(_path: str) -> None:
             raise ValueError("a bug")
 
-        monkeypatch.setattr(cli, "_require_file", broken)
+        monkeypatch.setattr(cli, "require_file", broken)
         with pytest.raises(ValueError, match="a bug"):
             main(["info", "m.node"])
 
     @pytest.mark.skipif(shutil.which("sh") is None, reason="signals as POSIX has them")
     def test_ctrl_c_in_a_process(self, inside: Path) -> None:
-        code = "import os, signal, sys; from exactmesh import cli; cli._require_file = lambda path: "
+        code = "import os, signal, sys; from exactmesh import cli; cli.require_file = lambda path: "
         code += "os.kill(os.getpid(), signal.SIGINT); sys.exit(cli.main(['info', 'm.node']))"
         done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (128 + signal.SIGINT, "exactmesh: interrupted\n")

@@ -21,7 +21,7 @@ from proofs_tests import lane_digest
 from proofs_tests.minifloat import Arithmetic
 
 import exactkernel as ek
-from exactkernel import batch, doubledouble, expansions, rational
+from exactkernel import batch, doubledouble, expansions, rational, shape
 from exactkernel.context import guarded_context
 from exactkernel.jit import cache_directory, is_cache_warm
 
@@ -29,6 +29,7 @@ FUSED = re.compile(r"\bv?fn?m(?:add|sub|la|ls)\w*")
 HAS_FUSED = platform.machine() in ("aarch64", "arm64") or llvmlite.binding.get_host_cpu_features().get("fma", False)
 #: The loops contain the predicates whole: numba links what they call.
 MODULES = ("expansions", "doubledouble", "batch")
+SHAPES = ("angle_below_adaptive", "angle_above_adaptive", "area_above_adaptive", "length_above_adaptive")
 
 
 def in_a_child(*command: str, **environment: str) -> str:
@@ -46,7 +47,12 @@ def in_a_child(*command: str, **environment: str) -> str:
 
 
 def digests() -> str:
-    parts = {**lane_digest.transforms(), **lane_digest.expansion_arithmetic(), **lane_digest.predicates()}
+    parts = {
+        **lane_digest.transforms(),
+        **lane_digest.expansion_arithmetic(),
+        **lane_digest.predicates(),
+        **lane_digest.shapes(),
+    }
     return "".join(f"{name} {digest}\n" for name, digest in parts.items())
 
 
@@ -100,13 +106,14 @@ class TestMachineCode:
         digests()
         ek.diametral_batch((0, 0), (1, 1), (2, 2))
         inspected = 0
-        for module in MODULES:
-            for name, function in compiled_functions(f"exactkernel.{module}").items():
-                signatures = getattr(function, "signatures", [])
-                assert signatures, f"{name} was never compiled: let the digest call it"
-                assert not FUSED.findall(machine_code(function, signatures[0], fastmath=False)), name
-                inspected += 1
-        assert inspected >= 15
+        functions = {name: f for module in MODULES for name, f in compiled_functions(f"exactkernel.{module}").items()}
+        functions.update((name, getattr(shape, name)) for name in SHAPES)
+        for name, function in functions.items():
+            signatures = getattr(function, "signatures", [])
+            assert signatures, f"{name} was never compiled: let the digest call it"
+            assert not FUSED.findall(machine_code(function, signatures[0], fastmath=False)), name
+            inspected += 1
+        assert inspected >= 19
 
     def test_no_function_allows_contraction(self) -> None:
         names = [name for name in sys.modules if name.startswith("exactkernel.")]

@@ -88,7 +88,7 @@ class TestExactSigns:
         assert ek.orient2d(*p) == oracle.orient2d(*p) == -1
 
 
-F, D, E, R = ek.Stage.FILTER, ek.Stage.DOUBLE_DOUBLE, ek.Stage.EXPANSION, ek.Stage.RATIONAL
+F, G, D, E, R = ek.Stage.FILTER, ek.Stage.GRID, ek.Stage.DOUBLE_DOUBLE, ek.Stage.EXPANSION, ek.Stage.RATIONAL
 Case: TypeAlias = tuple[Callable[..., tuple[ek.Sign, ek.Stage]], Callable[..., int], ek.Stage, tuple[Point, ...]]
 STAGED: list[Case] = [
     (ek.orient2d_staged, oracle.orient2d, F, ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
@@ -104,7 +104,8 @@ STAGED: list[Case] = [
     (ek.diametral_staged, oracle.diametral, R, ((-1e-200, 0.0), (1e-200, 0.0), (0.0, 1e-200))),
     (ek.incircle_staged, oracle.incircle, F, ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, 0.0))),
     (ek.incircle_staged, oracle.incircle, D, ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0 - 2 * U))),
-    (ek.incircle_staged, oracle.incircle, E, ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))),
+    (ek.incircle_staged, oracle.incircle, G, ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))),
+    (ek.incircle_staged, oracle.incircle, E, ((0.1, 0.2), (0.7, 0.2), (0.7, 0.9), (0.1, 0.9))),
     (ek.incircle_staged, oracle.incircle, E, ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (U, -1.0))),
     (ek.incircle_staged, oracle.incircle, R, ((1e-200, 0.0), (0.0, 1e200), (-1.0, 0.0), (0.0, -1.0))),
 ]

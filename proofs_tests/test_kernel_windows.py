@@ -14,7 +14,7 @@ from proofs_tests.kernel_strategies import Point, point_tuples
 import exactkernel as ek
 from exactkernel import constants
 from exactkernel.context import bits_of, make_context, scaled_into_window
-from exactkernel.incircle import incircle_adaptive
+from exactkernel.incircle import incircle_adaptive, on_common_grid
 from exactkernel.orient2d import orient2d_adaptive
 
 STEP_2 = math.ulp(constants.MIN_COORDINATE_DEGREE_2)
@@ -208,6 +208,22 @@ class TestGridStage:
             stage, sign = self.stage_and_sign(points)
             assert sign == 0
             assert (stage == ek.Stage.GRID) is within
+
+    @given(st.lists(st.tuples(st.integers(-2047, 2047), st.integers(-2047, 2047)), min_size=4, max_size=4))
+    def test_a_grid_of_their_own(self, corners: list[tuple[int, int]]) -> None:
+        """Four points find their common grid themselves, at any scale, where that of the input is unknown."""
+        for scale in (1.0, 2.0**-100, 2.0**90):
+            coordinates = np.array(corners) * scale
+            context = make_context(coordinates)._replace(grid_limit=0.0, incircle_bound=math.inf)
+            sign = incircle_adaptive(context, *coordinates.ravel().tolist())
+            assert sign == oracle.incircle(*[tuple(p) for p in coordinates.tolist()])
+            stages = np.flatnonzero(context.counts[1])
+            assert set(stages.tolist()) <= {int(ek.Stage.FILTER), int(ek.Stage.GRID)}
+
+    def test_control_numbers_without_a_grid(self) -> None:
+        assert on_common_grid(1.0, 2.0, 4095.0, -7.0, 0.0, 0.5 * 2)
+        assert not on_common_grid(1.0, 2.0, 4097.0, -7.0, 0.0, 1.0)
+        assert not on_common_grid(1.0, 2.0**-13, 0.0, 0.0, 0.0, 1.0)
 
     @given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3)), min_size=4, max_size=4))
     def test_extreme_corners(self, choice: list[tuple[int, int]]) -> None:

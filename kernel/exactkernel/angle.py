@@ -9,6 +9,7 @@ anglebound.py for why sine and cosine always decide.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from gmpy2 import mpq
 
 from exactkernel.anglebound import DIRECTIONS, cosine_and_sine
@@ -16,7 +17,7 @@ from exactkernel.codes import DOUBLE_DOUBLE, EXPANSION, FILTER, GRID, RATIONAL
 from exactkernel.constants import DD_BOUND, LARGEST_WEIGHT, ORIENT2D_BOUND, SHAPE_FACTOR, SMALLEST_WEIGHT
 from exactkernel.context import ORIENT2D_ROW, Context
 from exactkernel.doubledouble import dd_add, dd_multiply
-from exactkernel.errors import BoundError
+from exactkernel.errors import BoundError, shown
 from exactkernel.expansions import determinant_2x2, expansion_sign, expansion_sum, negate, two_diff
 from exactkernel.jit import jit, jit_inline
 from exactkernel.orient2d import safe_degree_2
@@ -69,9 +70,10 @@ def angle_bound(degrees: float) -> AngleBound:
     >>> bound.degrees, bound.sine, bound.is_exact
     (20.0, 0.3420201433256687, False)
     """
-    degrees = float(degrees)
-    if not 0.0 <= degrees <= 180.0:
-        raise BoundError(f"an angle is between 0 and 180 degrees, not {degrees}")
+    given: object = degrees
+    if not isinstance(given, (int, float, np.integer, np.floating)) or not 0.0 <= given <= 180.0:
+        raise BoundError(f"an angle is between 0 and 180 degrees, not {shown(given)}")
+    degrees = float(given)
     exact = mpq(degrees)
     if exact in DIRECTIONS:
         cosine, sine = DIRECTIONS[exact]

@@ -152,6 +152,24 @@ def incircle_filter(
 
 
 @jit
+def on_common_grid(a: float, b: float, c: float, d: float, e: float, f: float) -> bool:
+    """Tell whether the numbers are multiples of a power of two that is at least 2^-12 of the largest: see GRID_STEPS.
+
+    Adding 1.5 * 2^52 grid units and taking them away again rounds to a multiple of the unit.
+    """
+    largest = max(max(max(abs(a), abs(b)), max(abs(c), abs(d))), max(abs(e), abs(f)))
+    shift = math.ldexp(1.5, math.frexp(largest)[1] + 40)
+    return bool(
+        (a + shift) - shift == a
+        and (b + shift) - shift == b
+        and (c + shift) - shift == c
+        and (d + shift) - shift == d
+        and (e + shift) - shift == e
+        and (f + shift) - shift == f
+    )
+
+
+@jit
 def incircle_slow(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> int:
@@ -172,7 +190,9 @@ def incircle_slow(
     c, ct = two_diff(cx, dx)
     C, Ct = two_diff(cy, dy)
     det, permanent = determinant_and_permanent(a, A, b, B, c, C)
-    if max(max(max(abs(a), abs(A)), max(abs(b), abs(B))), max(abs(c), abs(C))) <= k.grid_limit:
+    is_exact = at == 0.0 and At == 0.0 and bt == 0.0 and Bt == 0.0 and ct == 0.0 and Ct == 0.0
+    within = max(max(max(abs(a), abs(A)), max(abs(b), abs(B))), max(abs(c), abs(C))) <= k.grid_limit
+    if within or (is_exact and on_common_grid(a, A, b, B, c, C)):
         return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
     det = incircle_double_double(a, at, A, At, b, bt, B, Bt, c, ct, C, Ct)
     bound = DD_BOUND * permanent

@@ -3,7 +3,6 @@
 Imports stand where they are needed, so that ``--help`` and a wrong path answer at once.
 """
 
-import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -12,9 +11,12 @@ from typing import TYPE_CHECKING, Annotated, BinaryIO
 
 import typer
 
+from exactmesh.cli_arguments import carve_rule, require_file
+from exactmesh.triangulate_command import triangulate
+
 if TYPE_CHECKING:
     from exactmesh.io import Mesh
-    from exactmesh.pslg import PSLG, Carve
+    from exactmesh.pslg import PSLG
 
 __all__ = ["app", "main"]
 
@@ -22,7 +24,6 @@ _VIOLATION = 1
 _BAD_INPUT = 2
 _INTERRUPTED = 130
 _READER_GONE = 141  # as a shell reports SIGPIPE: neither yes nor no
-_KEEP_ALL = "none"
 
 #: click's base of wrong options, missing arguments and so on; typer may carry its own copy of click.
 _UsageError: type[typer.BadParameter] = typer.BadParameter.__mro__[1]
@@ -53,59 +54,7 @@ def _common(
         typer.echo(context.get_help())
 
 
-@app.command()
-def triangulate(
-    source: Annotated[
-        str, typer.Argument(metavar="IN", help="A graph: .poly, .geojson, .json; or points: .node, .csv, .npz.")
-    ],
-    output: Annotated[
-        str | None,
-        typer.Option("-o", "--output", metavar="OUT", help=".node, .ele and .poly, or .npz; x.poly gives x.1.node."),
-    ] = None,
-    carve: Annotated[
-        str | None, typer.Option(metavar="seeds|even-odd|none", help="Which faces of a graph to keep; none: the hull.")
-    ] = None,
-    crossings: Annotated[
-        str | None, typer.Option(metavar="error|split", help="What to do about segments that cross; default: error.")
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Of the insertion order; the triangulation does not depend on it.")] = 0,
-) -> None:
-    """Write the (constrained) Delaunay triangulation of what is in IN."""
-    _require_file(source)
-    from exactmesh.constrain import Crossings
-    from exactmesh.io import holds_segments
-    from exactmesh.triangulate_file import files_of, next_name, triangulate_graph, triangulate_points
-
-    target = next_name(source) if output is None else output
-    if os.path.splitext(target)[1] not in (".node", ".ele", ".npz"):
-        raise typer.BadParameter(f"{target}: triangles go into .node and .ele, or .npz", param_hint="-o")
-    if files_of(source) & files_of(target):
-        raise typer.BadParameter(f"{target}: would overwrite the input", param_hint="-o")
-    if holds_segments(source):
-        treatment = Crossings.ERROR if crossings is None else Crossings(crossings)
-        lines = triangulate_graph(source, target, seed, _rule_of(carve), treatment)
-    elif carve is not None or crossings is not None:
-        hint = "--crossings" if carve is None else "--carve"
-        raise typer.BadParameter(f"{source} holds points, and no segments", param_hint=hint)
-    else:
-        lines = triangulate_points(source, target, seed)
-    for line in lines:
-        typer.echo(line)
-
-
-def _rule_of(carve: str | None) -> "Carve | bool":
-    """What to carve by; True: the file's own rule, False: nothing."""
-    if carve is None or carve == _KEEP_ALL:
-        return carve is None
-    return _carve(carve, _KEEP_ALL)
-
-
-def _carve(word: str, *others: str) -> "Carve":
-    from exactmesh.pslg import Carve
-
-    if word not in tuple(Carve):
-        raise typer.BadParameter(f"{word!r}; choose from {', '.join((*Carve, *others))}", param_hint="--carve")
-    return Carve(word)
+app.command()(triangulate)
 
 
 @app.command()
@@ -125,28 +74,36 @@ def verify(
         str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
     ] = None,
     orientation: Annotated[str, typer.Option(metavar="ccw|any", help="How triangles may be listed.")] = "ccw",
+    min_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is smaller.")] = None,
+    max_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is larger.")] = None,
+    max_area: Annotated[float | None, typer.Option(metavar="AREA", help="Claim that no triangle is larger.")] = None,
+    gabriel: Annotated[
+        bool,
+        typer.Option("--gabriel", help="Claim that no vertex is inside the circle of a boundary edge or segment."),
+    ] = False,
     json: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
     ] = None,
 ) -> None:
     """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
-    _require_file(mesh)
+    require_file(mesh)
     if domain is None and carve is not None:
         raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
     from exactkernel.jit import is_cache_warm
     from exactmesh.progress import working
     from exactmesh.verify.boundary import walk_convex
     from exactmesh.verify.chains import walk_chains
-    from exactmesh.verify_file import checked_against, checked_alone
+    from exactmesh.verify_file import Shapes, checked_against, checked_alone
 
     content = _triangles_of(mesh)
     graph = None if domain is None else _domain_of(domain, carve)
+    bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel)
     needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
     with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
         if graph is None:
-            report, note = checked_alone(content, mesh, claim or None, orientation)
+            report, note = checked_alone(content, mesh, claim or None, orientation, bounds)
         else:
-            report, note = checked_against(*graph, domain or "", content, claim or None, orientation), ""
+            report, note = checked_against(*graph, domain or "", content, claim or None, orientation, bounds), ""
     if json is not None and json != "-":
         _write_text(json, report.to_json())
     typer.echo(report.to_json() if json == "-" else str(report))
@@ -159,8 +116,8 @@ def verify(
 
 def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
     """Return the domain on file, and what its numbers count from."""
-    rule = None if carve is None else _carve(carve)
-    _require_file(path)
+    rule = None if carve is None else carve_rule(carve)
+    require_file(path)
     from exactmesh.io import read_graph
     from exactmesh.progress import working
 
@@ -197,7 +154,7 @@ def plot(
     title: Annotated[str | None, typer.Option(help="The caption; default: the file's name.")] = None,
 ) -> None:
     """Draw MESH into a picture; its triangles are coloured by their smallest angle."""
-    _require_file(mesh)
+    require_file(mesh)
     import numpy as np
 
     from exactmesh.io import read_triangles
@@ -215,7 +172,7 @@ def plot(
 @app.command()
 def info(mesh: _Mesh) -> None:
     """Print what MESH holds: counts, bounding box, angles and areas."""
-    _require_file(mesh)
+    require_file(mesh)
     from rich.console import Console
     from rich.table import Table
 
@@ -244,12 +201,6 @@ def demo(
 
     if not run_demo(folder, Console(highlight=False)):
         raise typer.Exit(_VIOLATION)
-
-
-def _require_file(path: str) -> None:
-    """Say at once that a file is missing; what is in it is the reader's business."""
-    if not os.path.exists(path):
-        raise FileNotFoundError(errno.ENOENT, "no such file", path)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -25,6 +25,9 @@ __all__ = [
 MarkerArray = npt.NDArray[np.int64]
 
 _REGIONS = "(r, 4): x, y, attribute, area; or (r, 3)"
+_ROWS_OF = {
+    "p": "points", "v": "vertices", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments",
+}  # fmt: skip
 _UNLIMITED = -1.0  # area of a region that is given without one
 
 A = TypeVar("A", bound=npt.NDArray[np.generic])
@@ -118,7 +121,7 @@ def rows_for(array: A | None, name: str, count: int | None) -> A | None:
     if array is None:
         return None
     if len(array) != count:
-        of = {"p": "points", "t": "triangles", "n": "triangles", "e": "edges", "s": "segments"}[name[0]]
+        of = _ROWS_OF[name[0]]
         raise ShapeError(f"{name} has {len(array)} rows for {'no' if count is None else count} {of}")
     return array
 

@@ -45,6 +45,7 @@ __all__ = [
     "PSLGError",
     "SeedError",
     "ShapeError",
+    "SnappingError",
     "TooFewPointsError",
     "TooManyCrossingsError",
     "TooManyPointsError",
@@ -98,6 +99,42 @@ class ConflictingValuesError(ExactMeshError):
 
 class SeedError(ExactMeshError):
     """A seed is no integer, or a negative one."""
+
+
+class SnappingError(ExactMeshError):
+    """A grid is too coarse for a PSLG: something in it is smaller than the cells.
+
+    ``merged`` (k, 2) are points at different places that share a cell; ``run_over`` (k, 2) are rows (segment, point)
+    where the segment passes the cell of a point that is not on it; ``holes`` and ``regions`` are seeds of which a
+    segment passes the cell. All int64, all of them, counted from 0. ``indices`` are the first of these groups that is
+    not empty: points or seeds.
+    """
+
+    def __init__(
+        self,
+        spacing: float,
+        *,
+        merged: npt.NDArray[np.int64],
+        run_over: npt.NDArray[np.int64],
+        holes: npt.NDArray[np.int64],
+        regions: npt.NDArray[np.int64],
+    ) -> None:
+        groups = (
+            ("points {} and {} share a cell", merged, merged[:, 1]),
+            ("segment {} passes the cell of point {}", run_over, run_over[:, 1]),
+            ("a segment passes the cell of hole {}", holes[:, None], holes),
+            ("a segment passes the cell of region {}", regions[:, None], regions),
+        )
+        found = [(text, rows, culprits) for text, rows, culprits in groups if len(rows)]
+        told = []
+        for text, rows, _ in found:
+            more = f" and {len(rows) - _NAMED} more" if len(rows) > _NAMED else ""
+            told.append(", ".join(text.format(*row) for row in rows[:_NAMED].tolist()) + more)
+        super().__init__(
+            f"grid of spacing {spacing} too coarse: {'; '.join(told)} (take more bits, or merge what should be one)",
+            indices=np.unique(found[0][2]).tolist() if found else (),
+        )
+        self.merged, self.run_over, self.holes, self.regions = merged, run_over, holes, regions
 
 
 class TopologyError(ExactMeshError):

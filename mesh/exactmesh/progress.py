@@ -26,7 +26,7 @@ def working(task: str, *, compiling: bool = False) -> Iterator[Callable[[int, in
     Elsewhere, one line says that there is something to compile, for that takes long.
 
     Yields:
-        A callback (done, total) that turns the spinner into a bar.
+        A callback (done, total) that turns the spinner into a bar, if the total is known: not 0.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -41,7 +41,7 @@ def working(task: str, *, compiling: bool = False) -> Iterator[Callable[[int, in
     timer.daemon = True
     timer.start()
     try:
-        yield lambda done, total: shown.update(bar, completed=done, total=total)
+        yield lambda done, total: shown.update(bar, completed=done, total=total or None)
     finally:
         timer.cancel()
         timer.join()

@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ldexp, sqrt
 
@@ -12,20 +12,48 @@ import numpy.typing as npt
 
 from exactkernel.jit import is_cache_warm
 from exactmesh.constrain import Crossings, constrain_range, constrained_delaunay
-from exactmesh.delaunay import delaunay, insert_range
-from exactmesh.errors import CrossingError, ExactMeshError, FileFormatError, PSLGError
+from exactmesh.delaunay import Progress, delaunay, insert_range
+from exactmesh.errors import ChoiceError, CrossingError, ExactMeshError, FileFormatError, OptionError, PSLGError
 from exactmesh.io import Mesh, mesh_of, read_graph, read_points, write
 from exactmesh.io.poly import has_points
 from exactmesh.progress import working
 from exactmesh.pslg import PSLG, Carve
+from exactmesh.refinement import Reason, Refinement, Steiner, refine
+from exactmesh.refinement.ruppert import run
 from exactmesh.triangulation import Triangulation
 
-__all__ = ["files_of", "next_name", "triangulate_graph", "triangulate_points"]
+__all__ = ["Quality", "files_of", "next_name", "refine_points", "triangulate_graph", "triangulate_points"]
 
+_DEFAULT_ANGLE = 20.0
 _NAMED = 3  # duplicates that a line spells out
 _HULL = "--carve none"
 _SPLIT = "--crossings split makes their crossings vertices"
 _TOGETHER = (".node", ".ele", ".poly")
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What the command asks of refinement; see :func:`exactmesh.refine`."""
+
+    min_angle: float | None = None
+    max_area: float | None = None
+    conforming: bool = False
+    steiner: str | None = None
+    max_steiner: int | None = None
+    min_edge: float | None = None
+
+    def refined(self, mesh: Triangulation, progress: Progress) -> Refinement:
+        """Refine a triangulation."""
+        return refine(
+            mesh,
+            min_angle=_DEFAULT_ANGLE if self.min_angle is None else self.min_angle,
+            max_area=self.max_area,
+            conforming=self.conforming,
+            steiner=Steiner.ANYWHERE if self.steiner is None else Steiner(self.steiner),
+            max_steiner=self.max_steiner,
+            min_edge=self.min_edge,
+            progress=progress,
+        )
 
 
 def files_of(path: str) -> set[str]:
@@ -71,25 +99,75 @@ def triangulate_points(source: str, target: str, seed: int) -> Iterator[str]:
     yield f"{len(triangulation.points)} points, {len(triangulation.triangles)} triangles: {' '.join(paths)}"
 
 
-def triangulate_graph(source: str, target: str, seed: int, carve: Carve | bool, crossings: Crossings) -> Iterator[str]:
-    """Write the constrained Delaunay triangulation of the graph in a file; yield lines that say what was done."""
+def triangulate_graph(
+    source: str, target: str, seed: int, carve: Carve | bool, crossings: Crossings, quality: Quality | None = None
+) -> Iterator[str]:
+    """Write the constrained Delaunay triangulation of the graph in a file, refined if asked; yield what was done."""
     with working(f"reading {source}"):
         pslg, base = read_graph(source)
-    with working("triangulating", compiling=not is_cache_warm(insert_range, constrain_range)) as progress:
+    yield from _written(pslg, base, source, target, seed, carve, crossings, quality)
+
+
+def refine_points(source: str, target: str, seed: int, quality: Quality) -> Iterator[str]:
+    """Write a refined triangulation of the hull of the points in a file; yield lines that say what was done."""
+    with working(f"reading {source}"):
+        points, base = read_graph(source)
+    try:
+        hull = delaunay(points.points, seed=seed)
+    except ExactMeshError as error:
+        raise FileFormatError(str(error), path=source) from error
+    first = np.flatnonzero(np.diff(np.maximum.accumulate(hull.representative), prepend=-1))
+    loop = first[hull.hull]
+    pslg = PSLG(
+        points.points,
+        np.stack([loop, np.roll(loop, -1)], axis=1),
+        point_markers=points.point_markers,
+        point_attributes=points.point_attributes,
+    )
+    yield from _written(pslg, base, source, target, seed, True, Crossings.ERROR, quality)
+
+
+def _written(
+    pslg: PSLG, base: int, source: str, target: str, seed: int, carve: Carve | bool, crossings: Crossings,
+    quality: Quality | None,
+) -> Iterator[str]:  # fmt: skip
+    needed = (insert_range, constrain_range, *((run,) if quality is not None else ()))
+    refinement = None
+    with working("triangulating", compiling=not is_cache_warm(*needed)) as progress:
         try:
             mesh = constrained_delaunay(pslg, carve=carve, crossings=crossings, seed=seed, progress=progress)
+            if quality is not None:
+                refinement = quality.refined(mesh, progress)
+                mesh = refinement.triangulation
         except PSLGError as error:
             raise PSLGError(error.faults, path=source, base=base, hull=_HULL) from None
         except CrossingError as error:
             raise CrossingError(
                 error.pairs, pslg.points, pslg.segments, path=source, base=base, remedy=_SPLIT
             ) from None
+        except (OptionError, ChoiceError):
+            raise
         except ExactMeshError as error:
             raise FileFormatError(str(error), path=source) from error
     paths = _write(target, replace(mesh_of(mesh), base=base))
     duplicates = pslg.duplicates
     yield from _duplicates(len(pslg.points), duplicates, pslg.representative[duplicates[:_NAMED]], base)
     yield f"{', '.join(_facts(pslg, mesh))}: {' '.join(paths)}"
+    if refinement is not None:
+        yield ", ".join(_account(refinement))
+
+
+def _account(done: Refinement) -> Iterator[str]:
+    """Yield what refinement did, and what it left undone."""
+    statistics = done.triangulation.statistics()
+    yield f"{len(done.steiner)} Steiner points"
+    yield f"angles {statistics.smallest_angle:.4g} to {statistics.largest_angle:.4g} degrees"
+    if done.displacement:
+        yield f"segments moved by at most {done.displacement:.3g}"
+    for reason in Reason:
+        count = int((done.reasons == reason).sum())
+        if count:
+            yield f"{count} triangles left as they are: {reason.name.lower().replace('_', ' ')}"
 
 
 def _facts(pslg: PSLG, mesh: Triangulation) -> Iterator[str]:

@@ -2,19 +2,51 @@
 
 import os
 from collections.abc import Collection
+from dataclasses import dataclass
 
 from exactmesh.errors import PSLGError
 from exactmesh.io import Mesh
 from exactmesh.pslg import PSLG
-from exactmesh.verify import Report, verify
+from exactmesh.verify import (
+    CONSTRAINED_TRIANGULATION,
+    DELAUNAY_TRIANGULATION,
+    DOMAIN_TRIANGULATION,
+    Property,
+    Report,
+    verify,
+)
 
-__all__ = ["checked_against", "checked_alone"]
+__all__ = ["Shapes", "checked_against", "checked_alone"]
 
 _REMEDY = "--domain FILE says what else it should cover"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shapes:
+    """What is claimed of shapes; None: nothing."""
+
+    min_angle: float | None = None
+    max_angle: float | None = None
+    max_area: float | None = None
+    gabriel: bool = False
+
+    def with_default(self, claims: Collection[str] | None, default: tuple[Property, ...]) -> Collection[str] | None:
+        """Return the claims with GABRIEL, where that was asked for."""
+        return (*(default if claims is None else claims), Property.GABRIEL) if self.gabriel else claims
+
+
+_ANY_SHAPE = Shapes()
+_WITH_LABELS = (*DOMAIN_TRIANGULATION, Property.REGIONS)
+
+
 def checked_against(
-    domain: PSLG, base: int, path: str, mesh: Mesh, claims: Collection[str] | None, orientation: str
+    domain: PSLG,
+    base: int,
+    path: str,
+    mesh: Mesh,
+    claims: Collection[str] | None,
+    orientation: str,
+    shapes: Shapes = _ANY_SHAPE,
 ) -> Report:
     """Verify the mesh as a triangulation of the domain that was read from ``path``, which counts from ``base``.
 
@@ -27,32 +59,57 @@ def checked_against(
     attributes = mesh.triangle_attributes if len(domain.regions) else None
     labels = None if attributes is None else attributes[:, -1]
     try:
-        return verify(mesh.points, mesh.triangles, domain=domain, labels=labels, claims=claims, orientation=orientation)
+        return verify(
+            mesh.points,
+            mesh.triangles,
+            domain=domain,
+            labels=labels,
+            min_angle=shapes.min_angle,
+            max_angle=shapes.max_angle,
+            max_area=shapes.max_area,
+            claims=shapes.with_default(claims, DOMAIN_TRIANGULATION if labels is None else _WITH_LABELS),
+            orientation=orientation,
+        )
     except PSLGError as error:
         raise PSLGError(error.faults, path=path, base=base) from None
 
 
-def checked_alone(mesh: Mesh, path: str, claims: Collection[str] | None, orientation: str) -> tuple[Report, str]:
+def _checked_hull(mesh: Mesh, claims: Collection[str] | None, orientation: str, shapes: Shapes) -> Report:
+    assert mesh.triangles is not None
+    default = DELAUNAY_TRIANGULATION if mesh.segments is None else CONSTRAINED_TRIANGULATION
+    return verify(
+        mesh.points,
+        mesh.triangles,
+        segments=mesh.segments,
+        min_angle=shapes.min_angle,
+        max_angle=shapes.max_angle,
+        max_area=shapes.max_area,
+        claims=shapes.with_default(claims, default),
+        orientation=orientation,
+    )
+
+
+def checked_alone(
+    mesh: Mesh, path: str, claims: Collection[str] | None, orientation: str, shapes: Shapes = _ANY_SHAPE
+) -> tuple[Report, str]:
     """Verify the mesh against its own segments and holes, or else against the hull; return a line that says which.
 
     The hull it is where there are no segments, where they describe no domain, and where the mesh is one of the hull and
     none of that domain: what is written with ``--carve none``.
     """
-    assert mesh.triangles is not None
     if mesh.segments is None or not len(mesh.segments):
-        return verify(mesh.points, mesh.triangles, segments=mesh.segments, claims=claims, orientation=orientation), ""
+        return _checked_hull(mesh, claims, orientation, shapes), ""
     place = _place_of_segments(path)
     try:
         domain = PSLG(mesh.points, mesh.segments, holes=mesh.holes, regions=mesh.regions)
-        report = checked_against(domain, mesh.base, place, mesh, claims, orientation)
+        report = checked_against(domain, mesh.base, place, mesh, claims, orientation, shapes)
     except PSLGError as error:
         why = f"for {PSLGError(error.faults, path=place, base=mesh.base)}"
     else:
         if report.ok or claims is not None:
             return report, f"(Checked against the domain of the segments and holes in {place}; {_REMEDY}.)"
         why = f"for it is no triangulation of the domain of the segments and holes in {place}"
-    of_hull = verify(mesh.points, mesh.triangles, segments=mesh.segments, claims=claims, orientation=orientation)
-    return of_hull, f"(Checked against the hull, {why}; {_REMEDY}.)"
+    return _checked_hull(mesh, claims, orientation, shapes), f"(Checked against the hull, {why}; {_REMEDY}.)"
 
 
 def _place_of_segments(path: str) -> str:

@@ -2,14 +2,23 @@
 
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import BinaryIO
 
-__all__ = ["Writer", "write_whole"]
+__all__ = ["Writer", "text_writer", "write_whole"]
 
 #: Writes one file's content to a stream.
 Writer = Callable[[BinaryIO], None]
+
+
+def text_writer(text: Callable[[], Iterable[str]]) -> Writer:
+    """Return what writes a text of ASCII, piece by piece."""
+
+    def write_to(stream: BinaryIO) -> None:
+        stream.writelines(piece.encode("ascii") for piece in text())
+
+    return write_to
 
 
 def write_whole(files: Mapping[str, Writer]) -> None:

@@ -11,7 +11,7 @@ from exactmesh.io.text import TextFile, rows_of_text
 __all__ = ["edge_text", "read_edge"]
 
 
-def read_edge(path: str, points: int, base: int) -> tuple[IntArray, MarkerArray | None]:
+def read_edge(path: str | TextFile, points: int, base: int) -> tuple[IntArray, MarkerArray | None]:
     """Return the end points (k, 2), counted from 0, and the markers (k,) of a ``.edge`` file.
 
     Header ``E has_markers`` (missing: 0), then E rows ``i a b [marker]``. Linear time.
@@ -19,7 +19,7 @@ def read_edge(path: str, points: int, base: int) -> tuple[IntArray, MarkerArray 
     Raises:
         FileFormatError: where and what; the rays of a ``.v.edge`` file are no edges.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     count, markers = file.header(("number of edges", "number of markers"), (0, 0))
     if markers > 1:
         raise file.fault(f"{markers} markers an edge; there can be 0 or 1", line=file.line_of(-1))

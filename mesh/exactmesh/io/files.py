@@ -3,10 +3,10 @@
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import BinaryIO, TypeAlias
+from typing import TypeAlias
 
 from exactmesh.errors import ExactMeshError, FileFormatError, PSLGError
-from exactmesh.io.atomic import Writer, write_whole
+from exactmesh.io.atomic import Writer, text_writer, write_whole
 from exactmesh.io.csv import csv_text, read_csv
 from exactmesh.io.edge import edge_text, read_edge
 from exactmesh.io.ele import ele_text, read_ele
@@ -273,7 +273,4 @@ def _of_triangle(stem: str, mesh: Mesh) -> dict[str, Writer]:
 
 
 def _texts(text: Callable[[Mesh], Iterator[str]], mesh: Mesh) -> Writer:
-    def write_to(stream: BinaryIO) -> None:
-        stream.writelines(chunk.encode("ascii") for chunk in text(mesh))
-
-    return write_to
+    return text_writer(lambda: text(mesh))

@@ -15,7 +15,7 @@ __all__ = ["neigh_text", "read_neigh"]
 _SIDES = 3
 
 
-def read_neigh(path: str, triangles: IntArray, base: int) -> IntArray:
+def read_neigh(path: str | TextFile, triangles: IntArray, base: int) -> IntArray:
     """Return the neighbours (m, 3), counted from 0, opposite the corners of the given triangles; -1 outside.
 
     Header ``N 3``, then N rows ``i n1 n2 n3``. Linear time.
@@ -23,7 +23,7 @@ def read_neigh(path: str, triangles: IntArray, base: int) -> IntArray:
     Raises:
         FileFormatError: where and what; also when neighbours are not mutual across their edge, or one is missing.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     count, sides = file.header(("number of triangles", "number of neighbours per triangle"), (0, _SIDES))
     if sides != _SIDES:
         raise file.fault(f"{sides} neighbours per triangle; expected 3", line=file.line_of(-1))

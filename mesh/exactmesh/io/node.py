@@ -10,7 +10,7 @@ from exactmesh.io.text import Table, TextFile, rows_of_text
 __all__ = ["node_header", "node_rows", "node_text", "points_of", "read_node"]
 
 
-def read_node(path: str) -> Mesh:
+def read_node(path: str | TextFile) -> Mesh:
     """Return the points of a ``.node`` file; ``base`` is the number of its first point.
 
     Header ``N 2 attributes has_markers`` (missing fields: 2, 0, 0), then N rows ``i x y attributes...
@@ -19,7 +19,7 @@ def read_node(path: str) -> Mesh:
     Raises:
         FileFormatError: where and what.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     count, attributes, markers = node_header(file)
     return points_of(file, file.table(node_rows(file, count, attributes, markers), count), markers)
 

@@ -28,7 +28,7 @@ __all__ = [
 _FIELDS_OF_A_REGION = (4, 5)
 
 
-def read_poly(path: str) -> tuple[Mesh, bool]:
+def read_poly(path: str | TextFile) -> tuple[Mesh, bool]:
     """Return the points, segments, holes and regions of a ``.poly`` file, and whether the points are in that file.
 
     Four sections: the points as in a ``.node`` file, or ``0``: the points are in the ``.node`` file beside it; header
@@ -39,10 +39,10 @@ def read_poly(path: str) -> tuple[Mesh, bool]:
     Raises:
         FileFormatError: where and what.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     count, attributes, markers = node_header(file)
     rows, rest = file.section(node_rows(file, count, attributes, markers), count)
-    nodes = points_of(file, rows, markers) if count else read_node(os.path.splitext(path)[0] + ".node")
+    nodes = points_of(file, rows, markers) if count else read_node(os.path.splitext(file.path)[0] + ".node")
     return _with_segments(nodes, rest), count > 0
 
 
@@ -51,13 +51,13 @@ def has_points(path: str) -> bool:
     return node_header(TextFile.load(path))[0] > 0
 
 
-def read_segments(path: str, nodes: Mesh) -> Mesh:
+def read_segments(path: str | TextFile, nodes: Mesh) -> Mesh:
     """Return the mesh with what a ``.poly`` file adds to its ``.node``; as it is, if the file has points of its own.
 
     Raises:
         FileFormatError: as for :func:`read_poly`.
     """
-    file = TextFile.load(path)
+    file = TextFile.of(path)
     count, attributes, markers = node_header(file)
     if count:
         return nodes

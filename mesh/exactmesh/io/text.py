@@ -92,6 +92,16 @@ class TextFile:
         text = _decoded(path)
         return cls(path, (re.sub(comment, "", text) if "#" in text else text).split("\n"))
 
+    @classmethod
+    def of(cls, source: "str | TextFile") -> "TextFile":
+        """Return the file at a path, or the one that is there already."""
+        return cls.load(source) if isinstance(source, str) else source
+
+    @classmethod
+    def from_text(cls, text: str, name: str) -> "TextFile":
+        """Return a text that was read from elsewhere, without its comments; ``name`` stands for it in messages."""
+        return cls(name, re.sub(r"#[^\n]*", "", text.replace("\r\n", "\n").replace("\r", "\n")).split("\n"))
+
     def fault(self, message: str, *, line: int | None = None) -> FileFormatError:
         """Return the error that says where and what."""
         return FileFormatError(message, path=self.path, line=line)

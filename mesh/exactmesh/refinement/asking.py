@@ -19,8 +19,8 @@ from exactmesh.plane import BoolArray
 from exactmesh.refinement.options import Size, Unsuitable, flags_of, sizes_of
 from exactmesh.refinement.placement import shortest_edge
 from exactmesh.refinement.queue import bucket_of, enqueue, forget
-from exactmesh.refinement.rules import ASKED, Rules
-from exactmesh.refinement.sheet import EDGES, OUTSIDE, Sheet
+from exactmesh.refinement.rules import Rules
+from exactmesh.refinement.sheet import ASKED, EDGES, FAULTS, KNOWN, OUTSIDE, Sheet
 from exactmesh.triangulation import Triangulation
 
 __all__ = ["Question", "area_question", "ask", "size_question", "unsuitable_question"]
@@ -87,13 +87,13 @@ def collect_fresh(s: Sheet, halves: IntArray) -> int:
     """Write a half-edge of each triangle that is not known yet; then they are. Return how many."""
     count = 0
     for half in range(2 * s.counts[EDGES]):
-        if s.zone[half] == OUTSIDE or s.known[half] != 0:
+        if s.zone[half] == OUTSIDE or s.state[half] & KNOWN:
             continue
         halves[count] = half
         count += 1
         e = 2 * half
         for _ in range(3):
-            s.known[e >> 1] = 1
+            s.state[e >> 1] |= KNOWN
             e = left_next(s.ring, e)
     return count
 
@@ -116,11 +116,11 @@ def enqueue_all(s: Sheet, rules: Rules, halves: IntArray) -> None:
         shortest, squared = shortest_edge(s, 2 * half)
         e, faults = shortest, ASKED
         for _ in range(3):
-            faults |= s.why[e >> 1]
+            faults |= s.state[e >> 1] & FAULTS
             forget(s, e >> 1)
-            s.known[e >> 1] = 1
+            s.state[e >> 1] = KNOWN
             e = left_next(s.ring, e)
-        s.why[half] = faults
+        s.state[half] |= faults
         enqueue(s, half, bucket_of(rules.longest, squared, False))
 
 

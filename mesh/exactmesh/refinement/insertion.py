@@ -117,14 +117,14 @@ def join_apex(s: Sheet, into: int, out: int, after: int, new: int, zone: int) ->
 
 
 @jit_inline
-def legalize(s: Sheet, first: int, p: int) -> int:
+def legalize(s: Sheet, first: int, p: int) -> tuple[int, int]:
     """Flip the edges of p's link, from the edge first on counterclockwise, until none is in conflict with p.
 
-    Where p is on the boundary, first must be the first edge of the link. Returns the number of flips, and their edges
-    in ``s.flipped``.
+    Where p is on the boundary, first must be the first edge of the link. Returns the number of flips, whose edges are
+    in ``s.flipped``, and the number of fixed edges in the link, which are in ``s.hit``.
     """
     ring, org = s.ring, s.org
-    flips, e, last = 0, first, origin(org, first)
+    flips, walls, e, last = 0, 0, first, origin(org, first)
     while True:
         flippable = s.segment[e >> 2] < 0
         beyond = left_next(ring, e ^ 2) if flippable else e
@@ -134,12 +134,15 @@ def legalize(s: Sheet, first: int, p: int) -> int:
             flips += 1
             e = beyond
         else:
+            if not flippable:
+                s.hit[walls] = e
+                walls += 1
             spoke = left_next(ring, e)
             if not is_inside(s, spoke ^ 2):
-                return flips
+                return flips, walls
             e = left_next(ring, spoke ^ 2)
             if origin(org, e) == last:
-                return flips
+                return flips, walls
 
 
 @jit

@@ -48,7 +48,7 @@ class Layout(NamedTuple):
 
 @jit
 def follow_lines(rows: IntArray, at: IntArray, smooth: BoolArray, lines: IntArray) -> None:
-    """Write the ends of each row's line, from both its ends on through smooth vertices, whose rows ``at`` (n, 2) has."""
+    """Write the ends of each row's line, from both its ends on through smooth vertices; ``at`` has their rows."""
     for first in range(len(rows)):
         if lines[first, 0] >= 0:
             continue
@@ -164,8 +164,7 @@ def laid_out(mesh: Triangulation, zone: IntArray) -> Layout:
         k, xy, ring, org, of_half, segment, hard=small, line=line, parent=np.full(vertices, -1, dtype=np.int32),
         radius=radius, root=radius.copy(), kind=np.zeros(vertices, dtype=np.int8), waiting=nothing,
         before=np.empty(BUCKETS, dtype=np.int32), after=np.empty(BUCKETS, dtype=np.int32),
-        why=np.zeros(2 * edges, dtype=np.int8), reason=np.zeros(2 * edges, dtype=np.int8),
-        known=np.zeros(2 * edges, dtype=np.int8),
+        state=np.zeros(2 * edges, dtype=np.int8),
         flipped=nothing, hit=nothing, counts=counts,
     )  # fmt: skip
     clear_queue(sheet)
@@ -198,9 +197,7 @@ def grown(s: Sheet, vertices: int) -> Sheet:
         waiting=_stretched(s.waiting, max(fixed, len(s.waiting))),
         before=_stretched(s.before, BUCKETS + 2 * edges),
         after=_stretched(s.after, BUCKETS + 2 * edges),
-        why=_stretched(s.why, 2 * edges),
-        reason=_stretched(s.reason, 2 * edges),
-        known=_stretched(s.known, 2 * edges),
+        state=_stretched(s.state, 2 * edges),
         flipped=np.empty(edges, dtype=np.int32),
         hit=np.empty(edges, dtype=np.int32),
     )

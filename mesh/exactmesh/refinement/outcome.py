@@ -15,7 +15,7 @@ from exactmesh.refinement.displacement import displacement_squared
 from exactmesh.refinement.layout import Layout
 from exactmesh.refinement.result import Refinement
 from exactmesh.refinement.rules import Reason
-from exactmesh.refinement.sheet import DEAD, EDGES, FLIPS, OUTSIDE, VERTICES, ByteArray, Sheet
+from exactmesh.refinement.sheet import DEAD, EDGES, FAULTS, FLIPS, GIVEN_UP, OUTSIDE, VERTICES, ByteArray, Sheet
 from exactmesh.triangulation import Triangulation, work_of
 
 __all__ = ["refinement_of"]
@@ -110,8 +110,9 @@ def _zones_of_triangles(s: Sheet, slot: EdgeArray, count: int) -> IntArray:
 
 def _unrefined(s: Sheet, slot: EdgeArray) -> tuple[IntArray, ByteArray]:
     """Return the triangles that were given up or still wait, ascending, and the reasons."""
-    reason = s.reason[: len(slot)].copy()
-    reason[s.why[: len(slot)] != 0] = Reason.BUDGET
+    state = s.state[: len(slot)]
+    reason = state // GIVEN_UP
+    reason[state & FAULTS != 0] = Reason.BUDGET
     halves = np.flatnonzero(reason)
     triangle = slot[halves] >> 2
     order = np.argsort(triangle, kind="stable")

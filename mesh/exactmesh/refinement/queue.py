@@ -8,7 +8,7 @@ A triangle that is destroyed leaves the queue at once, so that there is nothing 
 import math
 
 from exactkernel.jit import jit, jit_inline
-from exactmesh.refinement.sheet import TOP, Sheet
+from exactmesh.refinement.sheet import FAULTS, TOP, Sheet
 
 __all__ = ["BUCKETS", "bucket_of", "clear_queue", "enqueue", "forget", "next_half"]
 
@@ -38,27 +38,27 @@ def bucket_of(unit: float, squared: float, is_skinny: bool) -> int:
 
 @jit_inline
 def enqueue(s: Sheet, half: int, bucket: int) -> None:
-    """Put a half-edge that is in no bucket at the end of one."""
+    """Put a half-edge that is in no bucket at the front of one: what is new is in the cache."""
     node = BUCKETS + half
-    last = s.before[bucket]
-    s.after[last] = node
-    s.before[node] = last
-    s.after[node] = bucket
-    s.before[bucket] = node
+    first = s.after[bucket]
+    s.before[first] = node
+    s.after[node] = first
+    s.before[node] = bucket
+    s.after[bucket] = node
     s.counts[TOP] = max(s.counts[TOP], bucket)
 
 
 @jit_inline
 def forget(s: Sheet, half: int) -> None:
     """Take what is known of a triangle off a half-edge, out of the queue if it is there."""
-    if s.why[half] != 0:
+    if s.state[half] == 0:
+        return
+    if s.state[half] & FAULTS:
         node = BUCKETS + half
         left, right = s.before[node], s.after[node]
         s.after[left] = right
         s.before[right] = left
-        s.why[half] = 0
-    s.reason[half] = 0
-    s.known[half] = 0
+    s.state[half] = 0
 
 
 @jit_inline

@@ -21,7 +21,7 @@ from exactmesh.refinement.options import Options, Size, Steiner, Unsuitable, che
 from exactmesh.refinement.outcome import refinement_of
 from exactmesh.refinement.result import Refinement
 from exactmesh.refinement.rules import Reason, Rules
-from exactmesh.refinement.ruppert import BUDGET, DONE, ROOM, judge_all, run
+from exactmesh.refinement.ruppert import BUDGET, DONE, ROOM, judge_all, mark_encroached, run
 from exactmesh.refinement.sheet import EDGES, OUTSIDE, VERTICES, Sheet
 from exactmesh.triangulation import Triangulation
 
@@ -129,6 +129,8 @@ def refined(mesh: Triangulation, options: Options, progress: Progress | None) ->
         s, state = _exhaust(s, rules, progress)
         if not questions or not ask(s, rules, questions, layout.exponent) or state == BUDGET:
             break
+    if options.conforming:
+        mark_encroached(s, rules)
     return refinement_of(s, layout, mesh, regions, attributes)
 
 

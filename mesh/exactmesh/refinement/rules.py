@@ -14,12 +14,9 @@ from exactkernel.measure import area_above_adaptive
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import dest, origin
 from exactmesh.plane import BoolArray
-from exactmesh.refinement.sheet import Sheet, distance_squared
+from exactmesh.refinement.sheet import ANGLE, SIZE, Sheet, distance_squared
 
-__all__ = ["ANGLE", "ASKED", "SIZE", "Reason", "Rules", "SteinerKind", "faults_of", "is_encroached"]
-
-#: Bits of ``Sheet.why``: what is wrong with a triangle. ASKED: one of the user's functions says so.
-ANGLE, SIZE, ASKED = 1, 2, 4
+__all__ = ["Reason", "Rules", "SteinerKind", "faults_of", "is_encroached"]
 
 
 class Reason(IntEnum):

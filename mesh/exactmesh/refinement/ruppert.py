@@ -21,22 +21,18 @@ from exactmesh.refinement.insertion import (
 from exactmesh.refinement.placement import is_finite, move_to_lattice, place_centre, place_centroid, shortest_edge
 from exactmesh.refinement.queue import bucket_of, enqueue, forget, next_half
 from exactmesh.refinement.removal import remove_vertex
-from exactmesh.refinement.rules import (
-    ANGLE,
-    SIZE,
-    Reason,
-    Rules,
-    SteinerKind,
-    faults_of,
-    is_encroached,
-    joins_sharp_segments,
-)
+from exactmesh.refinement.rules import Reason, Rules, SteinerKind, faults_of, is_encroached, joins_sharp_segments
 from exactmesh.refinement.sheet import (
+    ANGLE,
     DEAD,
     EDGES,
+    FAULTS,
     FIXED,
     FLIPS,
+    GIVEN_UP,
+    KNOWN,
     OUTSIDE,
+    SIZE,
     VERTICES,
     WAITING,
     Sheet,
@@ -48,12 +44,13 @@ from exactmesh.refinement.split_point import split_point
 _WELL = 4.0  # squared: the parts of an edge are to be twice as long as the parent is away
 _ON_CIRCLE = 1e-9  # how far from a common circle, in lengths of the edge, will do
 
-__all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "run"]
+__all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "mark_encroached", "run"]
 
 #: What a run ended with: nothing left to do, more to do, a full array, no points left.
 DONE, MORE, ROOM, BUDGET = range(4)
 
 _SMALL_INPUT_ANGLE = int(Reason.SMALL_INPUT_ANGLE)
+_BUDGET = int(Reason.BUDGET)
 _MINIMUM_EDGE = int(Reason.MINIMUM_EDGE)
 _PRECISION = int(Reason.PRECISION)
 _FORBIDDEN = int(Reason.FORBIDDEN)
@@ -82,9 +79,9 @@ def file_fault(s: Sheet, rules: Rules, e: int, faults: int) -> None:
     """Queue a triangle with faults, or give it up where nothing but the input's own angles is wrong with it."""
     shortest, squared = shortest_edge(s, e)
     if faults == ANGLE and joins_sharp_segments(s, rules, origin(s.org, shortest), dest(s.org, shortest)):
-        s.reason[e >> 1] = _SMALL_INPUT_ANGLE
+        s.state[e >> 1] = GIVEN_UP * _SMALL_INPUT_ANGLE
         return
-    s.why[e >> 1] = faults
+    s.state[e >> 1] = faults
     enqueue(s, e >> 1, bucket_of(rules.longest, squared, faults == ANGLE))
 
 
@@ -129,9 +126,9 @@ def nearest_squared(s: Sheet, first: int, p: int) -> float:
 
 
 @jit_inline
-def settle(s: Sheet, first: int, p: int, parent: int, kind: int, root: float, line: int) -> None:
-    """Make p a vertex; root 0: it is one of its own."""
-    radius = math.sqrt(nearest_squared(s, first, p))
+def settle(s: Sheet, nearest: float, p: int, parent: int, kind: int, root: float, line: int) -> None:
+    """Make p a vertex, whose nearest is at that squared distance; root 0: it is one of its own."""
+    radius = math.sqrt(nearest)
     s.line[p], s.parent[p], s.kind[p] = line, parent, kind
     s.radius[p] = radius
     s.root[p] = radius if root == 0.0 else root
@@ -241,10 +238,11 @@ def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> N
         s.hard[e >> 2] = _MINIMUM_EDGE
         return
     new = divide_edge(s, e, p)
-    s.counts[FLIPS] += legalize(s, first_of_link(s, e, new), p)
+    flips, _ = legalize(s, first_of_link(s, e, new), p)
+    s.counts[FLIPS] += flips
     first = first_of_link(s, e, new)
     inherits = cause == _YIELDED or (cause == _ENCROACHED and s.kind[parent] != 0)
-    settle(s, first, p, parent, cause & 3, s.root[parent] if inherits else 0.0, row)
+    settle(s, nearest_squared(s, first, p), p, parent, cause & 3, s.root[parent] if inherits else 0.0, row)
     accept(s, rules, first, p)
     for part in (e, e ^ 2, new, new ^ 2):
         if is_inside(s, part):
@@ -254,23 +252,23 @@ def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> N
 
 
 @jit_inline
-def hindrance(s: Sheet, rules: Rules, first: int, p: int) -> int:
-    """List the fixed edges in p's link that p is too close to in ``s.hit``; return how many."""
-    e, last, hits = first, origin(s.org, first), 0
-    while True:
-        if s.segment[e >> 2] >= 0 and s.hard[e >> 2] != _FORBIDDEN and is_encroached(s, rules, e, p):
+def hindrance(s: Sheet, rules: Rules, p: int, walls: int) -> int:
+    """Keep those of the fixed edges in ``s.hit`` that p is too close to; return how many."""
+    hits = 0
+    for i in range(walls):
+        e = int(s.hit[i])
+        if s.hard[e >> 2] != _FORBIDDEN and is_encroached(s, rules, e, p):
             s.hit[hits] = e
             hits += 1
-        e = left_next(s.ring, left_next(s.ring, e) ^ 2)
-        if origin(s.org, e) == last:
-            return hits
+    return hits
 
 
 @jit_inline
 def give_up(s: Sheet, half: int, reason: int) -> None:
     """Leave a triangle as it is."""
+    known = s.state[half] & KNOWN
     forget(s, half)
-    s.reason[half] = reason
+    s.state[half] = GIVEN_UP * reason | known
 
 
 @jit_inline
@@ -287,7 +285,7 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
     """Put a point where the triangle on the left of the half-edge is bad, or divide the segments that object."""
     e, squared = shortest_edge(s, 2 * half)
     a, b = origin(s.org, e), dest(s.org, e)
-    parent, faults, p = max(a, b), s.why[half], int(s.counts[VERTICES])
+    parent, faults, p = max(a, b), s.state[half] & FAULTS, int(s.counts[VERTICES])
     root = min(s.root[a], s.root[b])
     if faults == ANGLE and squared < rules.shrink * root * root:
         give_up(s, half, _TERMINATION)
@@ -314,9 +312,7 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
 
 
 @jit_inline
-def insert_for(
-    s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, parent: int, root: float
-) -> None:
+def insert_for(s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, parent: int, root: float) -> None:
     """Insert p into the triangle on the left of e, or onto e (zeros = 1), for the bad triangle of the half-edge."""
     if zeros == 0:
         new, on = divide_face(s, e, p), -1
@@ -324,13 +320,14 @@ def insert_for(
     else:
         new, on = divide_edge(s, e, p), e
         first = left_next(s.ring, new)
-    flips = legalize(s, first, p)
+    flips, walls = legalize(s, first, p)
     first = left_next(s.ring, new)
-    hits = hindrance(s, rules, first, p)
-    too_near = rules.min_edge > 0.0 and nearest_squared(s, first, p) < rules.min_edge
+    hits = hindrance(s, rules, p, walls)
+    nearest = nearest_squared(s, first, p)
+    too_near = nearest < rules.min_edge
     if hits == 0 and not too_near:
         s.counts[FLIPS] += flips
-        settle(s, first, p, parent, _INTERIOR, root, -1)
+        settle(s, nearest, p, parent, _INTERIOR, root, -1)
         accept(s, rules, first, p)
         return
     undo_flips(s, flips)
@@ -379,6 +376,20 @@ def run(s: Sheet, rules: Rules, steps: int) -> int:
             return BUDGET
         refine_triangle(s, rules, half)
     return MORE
+
+
+@jit
+def mark_encroached(s: Sheet, rules: Rules) -> None:
+    """Give up the triangles beside segments that are not Gabriel in the end."""
+    for half in range(2 * s.counts[EDGES]):
+        e = 2 * half
+        if s.segment[e >> 2] < 0 or s.zone[half] == OUTSIDE:
+            continue
+        f = left_next(s.ring, e)
+        g = left_next(s.ring, f)
+        known = s.state[half] | s.state[f >> 1] | s.state[g >> 1]
+        if known & FAULTS == 0 and known < GIVEN_UP and is_encroached(s, rules, e, dest(s.org, f)):
+            s.state[half] = GIVEN_UP * (s.hard[e >> 2] if s.hard[e >> 2] != 0 else _BUDGET)
 
 
 @jit

@@ -18,11 +18,17 @@ from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import EdgeArray
 
 __all__ = [
+    "ANGLE",
+    "ASKED",
     "DEAD",
     "EDGES",
+    "FAULTS",
     "FIXED",
     "FLIPS",
+    "GIVEN_UP",
+    "KNOWN",
     "OUTSIDE",
+    "SIZE",
     "TOP",
     "VERTICES",
     "WAITING",
@@ -40,6 +46,10 @@ Counts = npt.NDArray[np.int64]
 #: Entries of ``Sheet.counts``: vertices, edges, fixed ones among them, those that wait to be divided, a bound of the
 #: buckets in use, flips, vertices that were removed.
 VERTICES, EDGES, FIXED, WAITING, TOP, FLIPS, DEAD = range(7)
+
+#: Parts of ``Sheet.state``. ASKED: one of the user's functions says that something is wrong with the triangle.
+ANGLE, SIZE, ASKED, KNOWN, GIVEN_UP = 1, 2, 4, 8, 16
+FAULTS = ANGLE | SIZE | ASKED
 
 #: The zone of a face outside of the domain.
 OUTSIDE = -1
@@ -61,9 +71,9 @@ class Sheet(NamedTuple):
         root: of each vertex, the radius of the first of its ancestors that had to be as close as it was.
         kind: of each vertex, its :class:`SteinerKind`, or 0 for the input, or -1 if it was removed.
         waiting: rows (edge, destination, parent, cause) of fixed edges to be divided.
-        before, after, why: the queue of triangles, see ``queue``.
-        reason: of each half-edge, the :class:`Reason` for which the triangle on its left was given up, or 0.
-        known: of each half-edge, whether the user's functions have been asked about the triangle on its left.
+        before, after: the queue of triangles, see ``queue``.
+        state: of each half-edge, what is known of the triangle on its left: its FAULTS, if it is in the queue; KNOWN,
+            if the user's functions have been asked about it; GIVEN_UP times the :class:`Reason` for that.
         flipped, hit: scratch, one entry for each edge.
         counts: int64.
     """
@@ -83,9 +93,7 @@ class Sheet(NamedTuple):
     waiting: EdgeArray
     before: EdgeArray
     after: EdgeArray
-    why: ByteArray
-    reason: ByteArray
-    known: ByteArray
+    state: ByteArray
     flipped: EdgeArray
     hit: EdgeArray
     counts: Counts

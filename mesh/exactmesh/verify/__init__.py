@@ -21,6 +21,7 @@
 
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
+    CONFORMING_TRIANGULATION,
     CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
     DOMAIN_TRIANGULATION,
@@ -35,6 +36,7 @@ from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, Verifica
 from exactmesh.verify.verifier import verify
 
 __all__ = [
+    "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
     "DOMAIN_TRIANGULATION",

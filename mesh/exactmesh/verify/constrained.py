@@ -15,7 +15,7 @@ from exactmesh.verify.links import Links
 from exactmesh.verify.matching import corners_at
 from exactmesh.verify.mesh import Integers, Mesh
 from exactmesh.verify.properties import Kind, Property, Verdict
-from exactmesh.verify.regions import check_labels
+from exactmesh.verify.regions import check_labels, check_region_areas
 from exactmesh.verify.report import WITNESSES, Finding, Violation
 from exactmesh.verify.triangles import Shapes, turned
 from exactmesh.verify.witness import IndexArray, finding_of, point_name
@@ -57,6 +57,8 @@ def check_constraints(
     unused: IndexArray,
     constraints: Constraints,
     positions: FloatArray,
+    marks: Marks,
+    decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide what rests on segments, the domain and labels.
 
@@ -66,8 +68,10 @@ def check_constraints(
         unused: points that are no corner.
         constraints: what was given.
         positions: that of ``stacked`` in the coordinates of the mesh.
+        marks: (3m,) zeros, to be written: what is known about the edges.
+        decided: what is asked for.
     """
-    tiled = Tiled(mesh, shapes, links, boundary, unused, np.zeros(len(links.slots), dtype=np.uint8))
+    tiled = Tiled(mesh, shapes, links, boundary, unused, marks)
     own, outline = constraints.segments, constraints.outline
     absent = np.empty(0, dtype=np.intp) if own is None else _absent(tiled, own)
     segments = finding_of(absent, lambda i: _missing(mesh, own, i)) if own is not None else Finding(Verdict.HOLDS)
@@ -98,7 +102,17 @@ def check_constraints(
             if missing
             else _regions(tiled, constraints.labels, outline, positions)
         )
+    if Property.REGION_AREAS in decided and outline is not None:
+        findings[Property.REGION_AREAS] = (
+            Finding(Verdict.UNDECIDED, because=missing) if missing else _region_areas(tiled, outline, positions)
+        )
     return findings
+
+
+def _region_areas(tiled: Tiled, outline: Outline, positions: FloatArray) -> Finding:
+    triangles = turned(tiled.mesh.triangles, tiled.shapes)
+    seeds = positions[len(positions) - len(outline.regions) :]
+    return check_region_areas(tiled.mesh, tiled.links, triangles, tiled.marks, seeds, outline.areas)
 
 
 def _regions(tiled: Tiled, labels: FloatArray, outline: Outline | None, positions: FloatArray) -> Finding:

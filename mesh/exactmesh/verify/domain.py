@@ -36,7 +36,7 @@ class Domain(Protocol):
 
     @property
     def regions(self) -> FloatArray:
-        """float64 (r, 3 or more): x, y of a point inside a region, its attribute, and what else there is."""
+        """float64 (r, 3 or more): x, y of a point inside a region, its attribute, its largest area if positive."""
 
     @property
     def rule(self) -> str:
@@ -46,13 +46,14 @@ class Domain(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A domain in arrays of its own: points, holes and regions as given."""
+    """A domain in arrays of its own: points, holes and regions as given; an area of infinity where there is none."""
 
     points: FloatArray
     segments: IndexArray
     holes: FloatArray
     regions: FloatArray
     attributes: FloatArray
+    areas: FloatArray
     even_odd: bool
 
 
@@ -138,6 +139,7 @@ def _outline(domain: Domain) -> Outline:
         finite_points(domain.holes, "domain.holes"),
         finite_points(regions[:, :2], "domain.regions"),
         regions[:, 2].copy(),
+        np.where(regions[:, 3] > 0.0, regions[:, 3], np.inf) if regions.shape[1] > 3 else np.full(len(regions), np.inf),
         rule == _EVEN_ODD,
     )
 

@@ -11,6 +11,7 @@ from enum import StrEnum
 from exactmesh.errors import ChoiceError
 
 __all__ = [
+    "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
     "DOMAIN_TRIANGULATION",
@@ -22,6 +23,7 @@ __all__ = [
     "Verdict",
     "asked_properties",
     "claimed_properties",
+    "decided_properties",
     "default_claims",
     "orientation_of",
 ]
@@ -88,6 +90,23 @@ class Property(StrEnum):
     """Every triangle has an area and no angle above 90 degrees."""
     ACUTE = "acute"
     """Every triangle has an area and only angles below 90 degrees."""
+    GABRIEL = "gabriel"
+    """For every edge of the boundary and every edge on a segment, no corner of a triangle is strictly inside its
+    diametral circle and visible from a point inside the edge, that is, joined to it by a line segment in the union of
+    the triangles. UNDECIDED without ADMISSIBLE, SEGMENTS_PRESENT and (CONSTRAINED_)DELAUNAY unless a violation is
+    found."""
+    CIRCUMCENTRES_INSIDE = "circumcentres_inside"
+    """Every triangle has an area, and the union of the triangles contains its circumcentre. UNDECIDED without
+    ADMISSIBLE unless a triangle has no area."""
+    MIN_ANGLE = "min_angle"
+    """Every triangle has an area and no angle below a bound."""
+    MAX_ANGLE = "max_angle"
+    """Every triangle has an area and no angle above a bound."""
+    MAX_AREA = "max_area"
+    """No triangle has an area above its bound."""
+    REGION_AREAS = "region_areas"
+    """No triangle in a face of the segments that contains the point of a region is larger than the fourth number of the
+    region, if that is positive. UNDECIDED without ADMISSIBLE and SEGMENTS_PRESENT."""
 
 
 #: The default claims: a Delaunay triangulation of all the points.
@@ -151,6 +170,11 @@ class Kind(StrEnum):
     NEW_POINT = "new_point"
     LABELS_DIFFER = "labels_differ"
     WRONG_LABEL = "wrong_label"
+    ENCROACHED = "encroached"
+    CENTRE_OUTSIDE = "centre_outside"
+    SMALL_ANGLE = "small_angle"
+    LARGE_ANGLE = "large_angle"
+    LARGE_AREA = "large_area"
 
 
 #: The default claims with segments: a constrained Delaunay triangulation of the hull of the points.
@@ -174,6 +198,16 @@ DOMAIN_TRIANGULATION: tuple[Property, ...] = (
     Property.DOMAIN_POINTS,
 )
 
+#: The claims of a boundary conforming Delaunay triangulation of a domain.
+CONFORMING_TRIANGULATION: tuple[Property, ...] = (
+    *DOMAIN_TRIANGULATION,
+    Property.GABRIEL,
+    Property.CIRCUMCENTRES_INSIDE,
+)
+
+#: What is decided only if it is claimed: it takes time, or says nothing of most meshes.
+_ON_CLAIM = (Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE, Property.REGION_AREAS)
+
 #: What each property needs besides points and triangles.
 _NEEDS = {
     Property.SEGMENTS_PRESENT: "segments or a domain",
@@ -182,15 +216,24 @@ _NEEDS = {
     Property.DOMAIN_POINTS: "a domain",
     Property.NO_NEW_POINTS: "a domain",
     Property.REGIONS: "labels, and segments or a domain",
+    Property.MIN_ANGLE: "min_angle=",
+    Property.MAX_ANGLE: "max_angle=",
+    Property.MAX_AREA: "max_area=",
+    Property.REGION_AREAS: "a domain",
 }
+#: What is claimed wherever it is given.
+_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
 
 
-def asked_properties(*, segments: bool, domain: bool, labels: bool) -> tuple[Property, ...]:
+def asked_properties(
+    *, segments: bool, domain: bool, labels: bool, bounds: Collection[Property] = ()
+) -> tuple[Property, ...]:
     """Return the properties that can be decided with what was given."""
     given = {
         "segments or a domain": segments or domain,
         "a domain": domain,
         "labels, and segments or a domain": labels and (segments or domain),
+        **{_NEEDS[property_]: property_ in bounds for property_ in _BOUNDS},
     }
     return tuple(property_ for property_ in Property if property_ not in _NEEDS or given[_NEEDS[property_]])
 
@@ -203,7 +246,7 @@ def default_claims(asked: tuple[Property, ...]) -> tuple[Property, ...]:
         claims = CONSTRAINED_TRIANGULATION
     else:
         claims = DELAUNAY_TRIANGULATION
-    return (*claims, Property.REGIONS) if Property.REGIONS in asked else claims
+    return claims + tuple(property_ for property_ in (Property.REGIONS, *_BOUNDS) if property_ in asked)
 
 
 def claimed_properties(
@@ -230,7 +273,13 @@ def claimed_properties(
             raise ChoiceError(f"{claim!r} is no property; choose from {', '.join(Property)}")
         if name not in asked:
             raise ChoiceError(f"{name} cannot be claimed without {_NEEDS[Property(name)]}")
-    return tuple(property_ for property_ in Property if property_ in named)
+    bounds = tuple(property_ for property_ in _BOUNDS if property_ in asked)
+    return tuple(property_ for property_ in Property if property_ in named or property_ in bounds)
+
+
+def decided_properties(asked: tuple[Property, ...], claimed: tuple[Property, ...]) -> tuple[Property, ...]:
+    """Return the properties that are reported: all that were asked but for those that are decided on a claim only."""
+    return tuple(property_ for property_ in asked if property_ not in _ON_CLAIM or property_ in claimed)
 
 
 def orientation_of(orientation: Orientation | str) -> Orientation:

@@ -5,26 +5,19 @@ import numpy.typing as npt
 
 from exactkernel.jit import jit
 from exactkernel.types import FloatArray, IntArray
+from exactmesh.verify.adjacency import neighbours_of, parts_of, rows_of_slots
+from exactmesh.verify.bounds import check_areas
 from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, Marks
-from exactmesh.verify.faces import Faces, faces_of
+from exactmesh.verify.faces import faces_of
 from exactmesh.verify.links import BOUNDARY, Links, ends_of, slot_of, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.report import Finding, Violation
-from exactmesh.verify.witness import finding_of, point_name
+from exactmesh.verify.witness import IndexArray, finding_of, point_name
 
-__all__ = ["check_labels"]
+__all__ = ["check_labels", "check_region_areas"]
 
-_CHUNK = 1 << 18  # triangles, or vertices, between two looks at Ctrl-C
-
-
-@jit
-def fill_rows(links: Links, triangles: IntArray, rows: IntArray, t_begin: int, t_end: int) -> None:
-    """Write the row of the triangle of each slot."""
-    for t in range(t_begin, t_end):
-        for i in range(3):
-            v, b = triangles[t, i], triangles[t, (i + 1) % 3]
-            rows[slot_of(links.slots, links.first[v], links.first[v + 1], b)] = t
+_CHUNK = 1 << 18  # vertices between two looks at Ctrl-C
 
 
 @jit
@@ -71,10 +64,8 @@ def check_labels(
 
     O(m), and O(s log s) for s edges on segments where there are seeds.
     """
-    rows, across = np.empty((2, len(links.slots)), dtype=np.int32)
+    rows, across = rows_of_slots(links, triangles), np.empty(len(links.slots), dtype=np.int32)
     differ = np.empty(len(links.slots), dtype=np.bool_)
-    for begin in range(0, len(triangles), _CHUNK):
-        fill_rows(links, triangles, rows, begin, min(begin + _CHUNK, len(triangles)))
     for begin in range(0, len(mesh.points), _CHUNK):
         differing(links, marks, labels, rows, across, differ, begin, min(begin + _CHUNK, len(mesh.points)))
     slots = np.flatnonzero(differ)
@@ -91,28 +82,34 @@ def check_labels(
     finding = finding_of(slots, describe)
     if finding.verdict is Verdict.FAILS or not len(seeds):
         return finding
+    inside, face, at = _located(mesh, links, marks, rows, across, seeds)
+    return _seeds(mesh, inside, face, at, labels, attributes)
+
+
+def _located(
+    mesh: Mesh, links: Links, marks: Marks, rows: IntArray, across: IntArray, seeds: FloatArray
+) -> tuple[IndexArray, IndexArray, IntArray]:
+    """Return the seeds that lie in covered faces of the segments, their faces, and the row of a triangle in each."""
     segments = np.flatnonzero((marks & (CONSTRAINED | IN_DOMAIN) > 0) & (links.kinds != BOUNDARY))
     slots = np.concatenate([slots_of(links, BOUNDARY), segments])
     faces = faces_of(mesh, links, slots, np.zeros(len(slots), dtype=np.bool_), None, seeds)
-    return _seeds(mesh, links, faces, rows, across, labels, attributes)
-
-
-def _seeds(
-    mesh: Mesh,
-    links: Links,
-    faces: Faces,
-    rows: IntArray,
-    across: IntArray,
-    labels: npt.NDArray[np.float64],
-    attributes: FloatArray,
-) -> Finding:
-    """Compare the points of regions with the label of their face, where that is one."""
     sides, on = faces.answers
     inside = np.flatnonzero(~on & faces.covered(sides))
     edges, face = sides[inside] >> 1, faces.plane.face[sides[inside]]
     slots = faces.plane.source[edges]
     upwards = ends_of(links, slots)[0] == faces.corner[faces.plane.low[edges]]
-    triangles = np.where(upwards, rows[slots], across[slots])
+    return inside, face, np.where(upwards, rows[slots], across[slots])
+
+
+def _seeds(
+    mesh: Mesh,
+    inside: IndexArray,
+    face: IndexArray,
+    triangles: IntArray,
+    labels: npt.NDArray[np.float64],
+    attributes: FloatArray,
+) -> Finding:
+    """Compare the points of regions with the label of their face, where that is one."""
     right = labels[triangles] == attributes[inside]
     culprits = np.flatnonzero(~np.isin(face, face[right]))
 
@@ -125,3 +122,35 @@ def _seeds(
         return Violation(Property.REGIONS, Kind.WRONG_LABEL, (t,), corners, message)
 
     return finding_of(culprits, describe)
+
+
+@jit
+def fill_across(links: Links, rows: IntArray, across: IntArray, v_begin: int, v_end: int) -> None:
+    """Write the row across each inner edge, at the slot of its smaller end."""
+    for v in range(v_begin, v_end):
+        for i in range(links.first[v], links.first[v + 1]):
+            b = links.slots[i] >> 32
+            across[i] = -1
+            if v < b and links.kinds[i] != BOUNDARY:
+                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+
+
+def check_region_areas(
+    mesh: Mesh, links: Links, triangles: IntArray, marks: Marks, seeds: FloatArray, areas: FloatArray
+) -> Finding:
+    """REGION_AREAS, for admissible triangles that contain every segment; arguments as for check_labels.
+
+    A face of the segments is a part of the triangles that is connected across the edges on no segment: one triangle in
+    it finds the others. Of several points in a face the smallest area counts.
+    """
+    limited = np.flatnonzero(areas < np.inf)
+    if not limited.size:
+        return Finding(Verdict.HOLDS)
+    rows, across = rows_of_slots(links, triangles), np.empty(len(links.slots), dtype=np.int32)
+    for begin in range(0, len(mesh.points), _CHUNK):
+        fill_across(links, rows, across, begin, min(begin + _CHUNK, len(mesh.points)))
+    inside, _, at = _located(mesh, links, marks, rows, across, seeds[limited])
+    part, count = parts_of(neighbours_of(links, triangles, rows, marks, CONSTRAINED | IN_DOMAIN))
+    limits = np.full(count, np.inf)
+    np.minimum.at(limits, part[at], areas[limited[inside]])
+    return check_areas(mesh, triangles, limits[part], Property.REGION_AREAS)

@@ -34,8 +34,9 @@ class Violation:
         message: one sentence with indices and coordinates.
         sign: the exact sign of the determinant that decided, where there is one.
         magnitude: that determinant, an exact rational in units of the coordinates: twice the signed area
-            (orient2d), the incircle determinant, or the scalar product of diametral.
-        severity: ``ROUNDING`` where doubles do not resolve the magnitude.
+            (orient2d, and where an area is too large), the incircle determinant, or the scalar product of diametral.
+        severity: ``ROUNDING`` where doubles do not resolve the magnitude, or its difference from a bound.
+        degrees: the angle that is below or above a bound, rounded.
     """
 
     property: Property
@@ -46,9 +47,11 @@ class Violation:
     sign: Sign | None = None
     magnitude: Fraction | None = None
     severity: Severity = Severity.WRONG
+    degrees: float | None = None
 
     def to_dict(self) -> dict[str, object]:
         """Return what JSON can say; the rational as "p/q"."""
+        angle = {} if self.degrees is None else {"degrees": self.degrees}
         return {
             "kind": self.kind.value,
             "severity": self.severity.value,
@@ -56,6 +59,7 @@ class Violation:
             "vertices": list(self.vertices),
             "sign": None if self.sign is None else int(self.sign),
             "magnitude": None if self.magnitude is None else f"{self.magnitude.numerator}/{self.magnitude.denominator}",
+            **angle,
             "message": self.message,
         }
 

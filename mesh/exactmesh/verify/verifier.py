@@ -10,9 +10,13 @@ from exactkernel.context import INCIRCLE_ROW, ORIENT2D_ROW
 from exactkernel.types import FloatArray, IntArray, Stage
 from exactmesh.verify.admissible import check_overlap, check_sweep, check_zero_area
 from exactmesh.verify.boundary import Boundary, boundary_of, convex_cycle
+from exactmesh.verify.bounds import Bounds, bounds_of, check_angle_bound, check_areas
+from exactmesh.verify.centres import check_centres
+from exactmesh.verify.chains import Marks
 from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
 from exactmesh.verify.domain import Constraints, Domain, constraints_of
+from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
@@ -23,6 +27,7 @@ from exactmesh.verify.properties import (
     Verdict,
     asked_properties,
     claimed_properties,
+    decided_properties,
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
@@ -39,6 +44,9 @@ def verify(
     segments: npt.ArrayLike | None = None,
     domain: Domain | None = None,
     labels: npt.ArrayLike | None = None,
+    min_angle: float | None = None,
+    max_angle: float | None = None,
+    max_area: "float | npt.ArrayLike | None" = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str = Orientation.CCW,
 ) -> Report:
@@ -56,10 +64,15 @@ def verify(
         domain: what should be covered, such as a :class:`exactmesh.PSLG`, in points and indices of its own: they are
             matched with those of the mesh by position, exactly.
         labels: (m,) numbers, one a triangle: the attribute of its region.
+        min_angle, max_angle: degrees, from 0 to 180: claims that no angle is below or above, exactly. No claim is made
+            of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
+        max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
+            positive where there is no bound.
         claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
-            of the domain (:data:`~exactmesh.verify.DOMAIN_TRIANGULATION`); with labels, REGIONS besides.
+            of the domain (:data:`~exactmesh.verify.DOMAIN_TRIANGULATION`); with labels, REGIONS besides. Bounds are
+            always claimed. GABRIEL, CIRCUMCENTRES_INSIDE and REGION_AREAS are decided only if they are claimed.
         orientation: "ccw", or "any" to take clockwise triangles as well.
 
     Raises:
@@ -67,6 +80,7 @@ def verify(
         CoordinateError: a coordinate is not exactly a double.
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
+        BoundError: an angle outside of 0 to 180 degrees, an area that is no number or not positive.
         ChoiceError: an unknown claim, rule or orientation, or a claim about something that was not given.
 
     O(n + m) for a Delaunay triangulation; O((n + m + s) log(n + m + s)) in general. Reference [Mehlhorn 1999],
@@ -82,9 +96,16 @@ def verify(
     >>> report.violations[0].magnitude
     Fraction(96, 1)
     """
-    asked = asked_properties(segments=segments is not None, domain=domain is not None, labels=labels is not None)
-    claimed, chosen = claimed_properties(claims, asked), orientation_of(orientation)
     doubles, triples = points_of(points), index_triples(triangles)
+    bounds = bounds_of(min_angle, max_angle, max_area, len(triples))
+    asked = asked_properties(
+        segments=segments is not None,
+        domain=domain is not None,
+        labels=labels is not None,
+        bounds=bounds.properties,
+    )
+    claimed, chosen = claimed_properties(claims, asked), orientation_of(orientation)
+    decided = decided_properties(asked, claimed)
     constraints = constraints_of(segments, domain, labels, len(triples))
     findings = {
         Property.FINITE: check_finite(doubles),
@@ -95,13 +116,13 @@ def verify(
     if not failed:
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
             mesh, positions = prepared_mesh(doubles, triples, stacked(constraints.outline))
-            findings.update(check_mesh(mesh, chosen, constraints, positions))
+            findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, decided))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
     undecided = Finding(Verdict.UNDECIDED, because=failed)
     return Report(
-        findings={property_: findings.get(property_, undecided) for property_ in asked},
+        findings={property_: findings.get(property_, undecided) for property_ in decided},
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
@@ -123,7 +144,12 @@ class Tiling:
 
 
 def check_mesh(
-    mesh: Mesh, orientation: Orientation, constraints: Constraints, positions: FloatArray
+    mesh: Mesh,
+    orientation: Orientation,
+    constraints: Constraints,
+    positions: FloatArray,
+    bounds: Bounds,
+    decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide everything about finite points and valid triangles; ``positions`` are those of the domain."""
     shapes = classified(mesh)
@@ -143,11 +169,47 @@ def check_mesh(
         Property.ACUTE: check_angles(mesh, shapes, Property.ACUTE),
     }
     findings.update(_against_points(mesh, shapes, tiling, unused))
+    findings.update(_against_bounds(mesh, shapes, upright, bounds))
+    boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
+    marks = np.zeros(len(tiling.links.slots), dtype=np.uint8)
     if constraints.any:
-        boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
         free = unused if links is tiling.links else unused_points(tiling.links)
-        findings.update(check_constraints(mesh, shapes, tiling.links, boundary, free, constraints, positions))
+        findings.update(
+            check_constraints(mesh, shapes, tiling.links, boundary, free, constraints, positions, marks, decided)
+        )
+    if Property.GABRIEL in decided or Property.CIRCUMCENTRES_INSIDE in decided:
+        missing = _missing_for_circles(tiling.links, marks, findings)
+        findings[Property.GABRIEL] = check_gabriel(mesh, tiling.links, marks, missing)
+    if Property.CIRCUMCENTRES_INSIDE in decided:
+        findings[Property.CIRCUMCENTRES_INSIDE] = check_centres(
+            mesh, shapes, tiling.links, upright, boundary, marks, findings[Property.GABRIEL]
+        )
     return findings
+
+
+def _against_bounds(mesh: Mesh, shapes: Shapes, upright: IntArray, bounds: Bounds) -> dict[Property, Finding]:
+    """MIN_ANGLE, MAX_ANGLE, MAX_AREA, as far as they were given."""
+    findings = {}
+    for property_, angle in ((Property.MIN_ANGLE, bounds.min_angle), (Property.MAX_ANGLE, bounds.max_angle)):
+        if angle is not None:
+            findings[property_] = check_angle_bound(mesh, shapes, upright, angle, property_)
+    if bounds.max_area is not None:
+        findings[Property.MAX_AREA] = check_areas(mesh, upright, bounds.max_area, Property.MAX_AREA)
+    return findings
+
+
+def _missing_for_circles(links: Links, marks: Marks, findings: dict[Property, Finding]) -> tuple[Property, ...]:
+    """Return what does not hold of that on which theorem H rests. It asks less than (constrained) Delaunay: unused
+    points do no harm."""
+    missing: list[Property] = [
+        property_
+        for property_ in (Property.ADMISSIBLE, Property.SEGMENTS_PRESENT)
+        if property_ in findings and findings[property_].verdict is not Verdict.HOLDS
+    ]
+    if not is_locally_delaunay(links, marks):
+        with_segments = Property.CONSTRAINED_DELAUNAY in findings
+        missing.append(Property.CONSTRAINED_DELAUNAY if with_segments else Property.DELAUNAY)
+    return tuple(missing)
 
 
 def tiled(mesh: Mesh, shapes: Shapes, proper: IntArray) -> Tiling:
