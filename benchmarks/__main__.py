@@ -1,4 +1,4 @@
-"""``python -m benchmarks delaunay|constrained|refine|verify [--quick] [--rounds N]``."""
+"""``python -m benchmarks delaunay|constrained|refine|voronoi|verify [--quick] [--rounds N]``."""
 
 import os
 
@@ -12,6 +12,7 @@ from benchmarks import constrained as constrained_benchmark
 from benchmarks import delaunay as delaunay_benchmark
 from benchmarks import refine as refine_benchmark
 from benchmarks import verify as verify_benchmark
+from benchmarks import voronoi as voronoi_benchmark
 
 app = typer.Typer(help=__doc__, no_args_is_help=True, add_completion=False)
 
@@ -35,6 +36,12 @@ def constrained(quick: Quick = False, rounds: Rounds = 5) -> None:
 def refine(quick: Quick = False, rounds: Rounds = 5) -> None:
     """Race the refiners on domains; growth, and Python callbacks."""
     refine_benchmark.run(quick=quick, rounds=rounds)
+
+
+@app.command()
+def voronoi(quick: Quick = False, rounds: Rounds = 5) -> None:
+    """Race the Voronoi diagrams on point sets; clipping, relaxation, interpolation."""
+    voronoi_benchmark.run(quick=quick, rounds=rounds)
 
 
 @app.command()

@@ -10,6 +10,7 @@ from statistics import median
 from typing import Any
 
 from benchmarks.constraining import CONSTRAINERS
+from benchmarks.diagrams import DIAGRAMS, USES
 from benchmarks.graphs import GRAPHS, graph_of
 from benchmarks.inputs import points_of
 from benchmarks.peers import PEERS, Mesher, version_of
@@ -49,7 +50,7 @@ class Outcome:
 
 
 def _mesher(key: str) -> Mesher:
-    return {**PEERS, **VERIFIERS, **CONSTRAINERS, **REFINERS, **CALLBACKS}[key]
+    return {**PEERS, **VERIFIERS, **CONSTRAINERS, **REFINERS, **CALLBACKS, **DIAGRAMS, **USES}[key]
 
 
 def _input(name: str, size: int | None) -> Any:

@@ -10,10 +10,11 @@ from matplotlib.figure import Figure
 from PIL import Image  # comes with matplotlib
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, Triangulation, constrained_delaunay, delaunay, refine, triangle
+from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, refine, triangle, voronoi
 from exactmesh.demo import course_points, lake, mosaic
 from exactmesh.plane import BoolArray
-from exactmesh.plot import plot_mesh
+from exactmesh.plot import plot_mesh, plot_voronoi
+from exactmesh.voronoi import lloyd
 
 HERE = Path(__file__).resolve().parent / "_static"
 
@@ -26,13 +27,15 @@ def shrink(large: Path, name: str, width: int) -> None:
     small.quantize(32, method=Image.Quantize.MEDIANCUT).save(HERE / f"{name}.png", optimize=True)
 
 
-def draw(name: str, mesh: Triangulation, title: str, *, width: int) -> None:
-    """Draw a triangulation, then shrink it."""
+def draw(name: str, shown: Triangulation | Voronoi, title: str, *, width: int) -> None:
+    """Draw a triangulation or a diagram, then shrink it."""
     with tempfile.TemporaryDirectory() as folder:
         large = Path(folder) / f"{name}.png"
-        plot_mesh(
-            mesh.points, mesh.triangles, large, segments=mesh.segments if len(mesh.segments) else None, title=title
-        )
+        if isinstance(shown, Voronoi):
+            plot_voronoi(shown, large, title=title)
+        else:
+            segments = shown.segments if len(shown.segments) else None
+            plot_mesh(shown.points, shown.triangles, large, segments=segments, title=title)
         shrink(large, name, width)
 
 
@@ -104,3 +107,8 @@ if __name__ == "__main__":
     draw("county", refine(borders, min_angle=30).triangulation, "Los Angeles County, refined to 30 degrees", width=880)
     draw("lake", constrained_delaunay(lake(), crossings="split"), "A lake, islands, and dikes that cross", width=880)
     draw_calls("calls", width=1000)
+    square = (0.0, 0.0, 1.0, 1.0)
+    points = np.random.default_rng(4).random((120, 2))
+    relaxed = lloyd(points, clip=square, iterations=100).points
+    draw("voronoi", voronoi(points, clip=square), "A hundred and twenty points in a square", width=560)
+    draw("lloyd", voronoi(relaxed, clip=square), "The same points, relaxed by a hundred steps", width=560)

@@ -8,7 +8,7 @@ their product 10 u, and second-order terms as incircle has them.
 import math
 
 from exactkernel.bisector_rational import along_from_doubles, crossing_order_from_doubles, nearer_from_doubles
-from exactkernel.centres import quotient_offset
+from exactkernel.centre import quotient_offset
 from exactkernel.constants import DD_BOUND, INCIRCLE_BOUND, ORIENT2D_BOUND, UNIT_ROUNDOFF
 from exactkernel.context import Context
 from exactkernel.crossing import is_nearest_certain

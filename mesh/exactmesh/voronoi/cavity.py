@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.centres import circumcentre_in_pairs
+from exactkernel.centre import circumcentre_in_pairs
 from exactkernel.constants import DD_BOUND
 from exactkernel.context import Context
 from exactkernel.crossing import dd_cross

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from gmpy2 import mpq
 
-from exactkernel.centres import nearest_circumcentre
+from exactkernel.centre import nearest_circumcentre
 from exactkernel.constructions import circumcentre
 from exactkernel.context import Context, bits_of, chunk_size, exponent_into_window, make_context
 from exactkernel.errors import DegenerateError
