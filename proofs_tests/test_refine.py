@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -201,7 +202,8 @@ class TestMesh:
 
 @pytest.mark.obligation("R1", "angle and area bounds hold exactly, and every exception is listed with its reason")
 class TestAccount:
-    """The triangles that are left are those that brute force finds bad; reasons apply; points, parents, radii are true."""
+    """The triangles that are left are those that brute force finds bad; reasons apply; points, parents, radii are
+    true."""
 
     @given(cases())
     def test_exceptions(self, case: Case) -> None:
@@ -221,11 +223,11 @@ class TestAccount:
         assert len(done.unrefined) > 1
         assert not account_faults(done, output, case)
         kept = np.arange(1, len(done.unrefined))
-        told = Refinement(**{**vars(done), "unrefined": done.unrefined[kept], "reasons": done.reasons[kept]})
+        told = replace(done, unrefined=done.unrefined[kept], reasons=done.reasons[kept])
         assert account_faults(told, output, case)
-        blamed = Refinement(**{**vars(done), "reasons": np.full_like(done.reasons, Reason.SMALL_INPUT_ANGLE)})
+        blamed = replace(done, reasons=np.full_like(done.reasons, Reason.SMALL_INPUT_ANGLE))
         assert account_faults(blamed, output, case)
-        larger = Refinement(**{**vars(done), "radii": done.radii / 2})
+        larger = replace(done, radii=done.radii / 2)
         assert steiner_faults(larger, constrained_delaunay(PLATE), case)
 
     @given(gentle_domains(), st.sampled_from([10.0, 20.0, 25.0, 30.0]))
@@ -238,18 +240,19 @@ class TestAccount:
         claims = [*DOMAIN_TRIANGULATION, Property.REGION_AREAS]
         verify(mesh.points, mesh.triangles, domain=domain, min_angle=degrees, claims=claims).raise_if_failed()
 
-    @given(gentle_domains())
-    def test_insertion_radii(self, domain: PSLG) -> None:
-        """Points inside for the sake of an angle: their radius is at least B that of their parent, B = 1/(2 sin 20);
-        no point is nearer than 1/sqrt 2 of its parent's radius."""
+    @given(gentle_domains(), st.sampled_from([15.0, 20.0]))
+    def test_insertion_radii(self, domain: PSLG, degrees: float) -> None:
+        """What is put in for the sake of an angle is no nearer to its neighbours than B = 1/(2 sin) times the radius of
+        its parent; what divides a segment in its stead, than B cos. So no loop of causes makes edges shorter."""
         bare = PSLG(domain.points, domain.segments, holes=domain.holes)
-        done = refine(bare, min_angle=20.0, max_steiner=20000)
+        done = refine(bare, min_angle=degrees, max_steiner=20000)
         start = len(done.triangulation.points) - len(done.steiner)
         radius = dict(zip(done.steiner.tolist(), done.radii.tolist(), strict=True))
+        angle = math.radians(degrees)
+        least = {SteinerKind.INTERIOR: 0.5 / math.sin(angle), SteinerKind.YIELDED: 0.5 / math.tan(angle)}
         for v, parent, kind in zip(done.steiner.tolist(), done.parents.tolist(), done.kinds.tolist(), strict=True):
-            if parent >= start:
-                factor = 1.0 / (2.0 * math.sin(math.radians(20.0))) if kind == SteinerKind.INTERIOR else 0.5
-                assert radius[v] >= (1.0 - 2.0**-40) * min(1.0, factor) * radius[parent], (v, parent, kind)
+            if parent >= start and kind in least:
+                assert radius[v] >= (1.0 - 2.0**-40) * least[SteinerKind(kind)] * radius[parent], (v, parent, kind)
 
 
 @pytest.mark.obligation("R1", "conforming: every edge of the boundary and of a segment Gabriel, circumcentres inside")
@@ -274,7 +277,6 @@ class TestConforming:
         assert refine_oracle.encroached(output_of(refine(tent, min_angle=0), tent))
         done = refine(tent, min_angle=0, conforming=True)
         assert not refine_oracle.encroached(output_of(done, tent))
-        assert len(done.steiner) == 1
 
 
 @pytest.mark.obligation("R1", "size fields, unsuitable triangles, areas of triangles and regions")
@@ -340,13 +342,13 @@ class TestAskedFor:
 
     def test_areas_of_regions(self) -> None:
         """The smaller of the region's area and ``max_area``; no area for a region without one."""
-        graph = PSLG(SQUARE, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)], regions=[(3, 1, 7, 0.25), (1, 3, 8)])
+        graph = PSLG(SQUARE, [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)], regions=[(3, 1, 7, 0.25), (1, 3, 8, -1)])
         for max_area, expected in ((None, (0.25, math.inf)), (1.0, (0.25, 1.0)), (0.125, (0.125, 0.125))):
             mesh = refine(graph, max_area=max_area).triangulation
-            corners = [[*map(tuple, mesh.points[t].tolist())] for t in mesh.triangles]
+            points = [*map(tuple, mesh.points.tolist())]
             for region, area in enumerate(expected):
-                mine = [c for c, r in zip(corners, mesh.triangle_regions, strict=True) if r == region]
-                output = Output([p for c in mine for p in c], [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(len(mine))], [], [])  # fmt: skip
+                mine = [tuple(t) for t in mesh.triangles[mesh.triangle_regions == region].tolist()]
+                output = Output(points, mine, [], [])
                 assert mine
                 assert area == math.inf or not refine_oracle.area_faults(output, area)
             verify(
