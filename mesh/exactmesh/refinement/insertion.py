@@ -6,7 +6,17 @@ from exactkernel.jit import jit, jit_inline
 from exactmesh.edgealgebra import dest, left_next, link_ring, origin, split_face, swap
 from exactmesh.refinement.sheet import EDGES, FIXED, OUTSIDE, Sheet, conflict, orient
 
-__all__ = ["divide_edge", "divide_face", "is_inside", "legalize", "seek", "take_out", "undo_flips"]
+__all__ = [
+    "close_face",
+    "divide_edge",
+    "divide_face",
+    "is_inside",
+    "legalize",
+    "rejoin_edge",
+    "seek",
+    "spokes_are_delaunay",
+    "undo_flips",
+]
 
 _PATIENCE = 1 << 20
 
@@ -154,23 +164,52 @@ def undo_flips(s: Sheet, flips: int) -> None:
 
 
 @jit
-def take_out(s: Sheet, new: int, on: int) -> None:
-    """Undo divide_face (on < 0) or divide_edge of the edge on, whose new edges begin with new."""
-    ring, org = s.ring, s.org
+def close_face(s: Sheet, new: int) -> None:
+    """Undo divide_face, whose new edges begin with new."""
+    ring = s.ring
     s.counts[EDGES] = new >> 2
-    if on < 0:
-        ab, bc, ca = left_next(ring, new), left_next(ring, new + 4), left_next(ring, new + 8)
-        link_ring(ring, ab, bc)
-        link_ring(ring, bc, ca)
-        link_ring(ring, ca, ab)
-        return
-    back = on ^ 2
-    bc, ca = left_next(ring, new), left_next(ring, left_next(ring, on))
-    ad, db = left_next(ring, back), left_next(ring, left_next(ring, new ^ 2))
-    org[back >> 1] = org[(new ^ 2) >> 1]
-    link_ring(ring, on, bc)
+    ab, bc, ca = left_next(ring, new), left_next(ring, new + 4), left_next(ring, new + 8)
+    link_ring(ring, ab, bc)
     link_ring(ring, bc, ca)
-    link_ring(ring, ca, on)
-    link_ring(ring, back, ad)
-    link_ring(ring, ad, db)
-    link_ring(ring, db, back)
+    link_ring(ring, ca, ab)
+
+
+@jit
+def rejoin_edge(s: Sheet, e: int, new: int) -> None:
+    """Undo divide_edge of e, whose new edges begin with new."""
+    ring, org = s.ring, s.org
+    back = e ^ 2
+    after, beyond, before = left_next(ring, new), left_next(ring, back), int(ring[new ^ 2]) ^ 2
+    if is_inside(s, e):
+        last = left_next(ring, left_next(ring, e))
+        link_ring(ring, after, last)
+        link_ring(ring, last, e)
+    if is_inside(s, back):
+        before = left_next(ring, left_next(ring, new ^ 2))
+        link_ring(ring, beyond, before)
+    org[back >> 1] = org[(new ^ 2) >> 1]
+    link_ring(ring, e, after)
+    link_ring(ring, before, back)
+    link_ring(ring, back, beyond)
+    s.counts[EDGES] = new >> 2
+    s.counts[FIXED] -= s.segment[e >> 2] >= 0
+
+
+@jit_inline
+def spokes_are_delaunay(s: Sheet, first: int, p: int) -> bool:
+    """Tell whether the free edges at p are locally Delaunay; first is the first edge of its link.
+
+    They are, but where p was rounded off the segment that it divides, away from a triangle that was there.
+    """
+    ring, org = s.ring, s.org
+    e, last = first, origin(org, first)
+    while True:
+        spoke = left_next(ring, e)
+        if not is_inside(s, spoke ^ 2):
+            return True
+        following = left_next(ring, spoke ^ 2)
+        if s.segment[spoke >> 2] < 0 and conflict(s, origin(org, e), dest(org, e), p, dest(org, following)):
+            return False
+        e = following
+        if origin(org, e) == last:
+            return True

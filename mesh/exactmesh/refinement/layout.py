@@ -1,5 +1,6 @@
 """From a triangulation to a sheet with room to grow."""
 
+import math
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -19,9 +20,9 @@ from exactmesh.refinement.queue import BUCKETS, clear_queue
 from exactmesh.refinement.sheet import EDGES, FIXED, OUTSIDE, TOP, VERTICES, WAITING, Sheet
 from exactmesh.triangulation import Triangulation
 
-_TINIEST = 5e-324  # the smallest double: no restriction
+TINIEST = 5e-324  # the smallest double: no restriction
 
-__all__ = ["Layout", "grown", "laid_out"]
+__all__ = ["TINIEST", "Layout", "grown", "laid_out"]
 
 A = TypeVar("A", bound=np.generic)
 
@@ -35,7 +36,8 @@ class Layout(NamedTuple):
         unit: new coordinates of the sheet are to be multiples of it.
         rows: int32 (r, 2), the fixed edges: the segments of the triangulation, then the other edges of its boundary.
         lines: int32 (r, 2), the ends of the straight line that each is part of: see ``lines_of``.
-        sharp: bool (r, 2), whether another line leaves those ends at less than 90 degrees.
+        sharp: float64 (r, 2), the angle to the nearest other line at those ends, radians; 0 where it is not below 90
+            degrees.
     """
 
     sheet: Sheet
@@ -43,7 +45,7 @@ class Layout(NamedTuple):
     unit: float
     rows: IntArray
     lines: IntArray
-    sharp: BoolArray
+    sharp: FloatArray
 
 
 @jit
@@ -92,9 +94,9 @@ def lines_of(mesh: Triangulation, rows: IntArray) -> tuple[IntArray, IntArray]:
 @jit
 def mark_sharp(
     xy: FloatArray, ring: EdgeArray, org: EdgeArray, zone: EdgeArray, segment: EdgeArray, lines: IntArray,
-    sharp: BoolArray,
+    sharp: FloatArray,
 ) -> None:  # fmt: skip
-    """Mark the ends of lines from which, through the domain, the next fixed edge is less than 90 degrees away."""
+    """Write the angles at the ends of lines to the next fixed edge, through the domain, that are below 90 degrees."""
     for e in range(0, 4 * len(segment), 2):
         if segment[e >> 2] < 0 or zone[e >> 1] == OUTSIDE:
             continue
@@ -106,10 +108,11 @@ def mark_sharp(
         bx, by = xy[2 * b] - xy[2 * v], xy[2 * b + 1] - xy[2 * v + 1]
         dot, cross = ax * bx + ay * by, ax * by - ay * bx
         if f != e and cross >= 0.0 and dot > 0.0:
+            angle = max(math.atan2(cross, dot), TINIEST)
             for row in (segment[e >> 2], segment[f >> 2]):
                 for end in range(2):
-                    if lines[row, end] == v:
-                        sharp[row, end] = True
+                    if lines[row, end] == v and (sharp[row, end] == 0.0 or angle < sharp[row, end]):
+                        sharp[row, end] = angle
 
 
 @jit
@@ -138,7 +141,7 @@ def laid_out(mesh: Triangulation, zone: IntArray) -> Layout:
     maximum, unit = bits_of(mesh.points)
     exponent = exponent_into_window(maximum, unit)
     scaled = np.ldexp(mesh.points, exponent)
-    k, finest = make_context(scaled), _TINIEST
+    k, finest = make_context(scaled), TINIEST
     if k.incircle_bound < np.inf and np.abs(scaled).max() <= MAX_COORDINATE_DEGREE_4:
         finest = max(MIN_UNIT_DEGREE_4, float(np.ldexp(1.0, max(exponent - 1074, -1074))))
         k = rebounded(k, float(np.abs(scaled).max()), finest)
@@ -150,7 +153,7 @@ def laid_out(mesh: Triangulation, zone: IntArray) -> Layout:
     segment[order[np.searchsorted(keys, edge_keys(rows), sorter=order)]] = np.arange(len(rows), dtype=np.int32)
     of_half = np.append(zone, np.int32(OUTSIDE))[face.reshape(-1, 2)[:, ::-1].reshape(-1)].astype(np.int32)
     flip_all(scaled, k, ring, org, segment >= 0)
-    sharp = np.zeros(rows.shape, dtype=np.bool_)
+    sharp = np.zeros(rows.shape)
     xy = scaled.reshape(-1)
     mark_sharp(xy, ring, org, of_half, segment, lines, sharp)
     radius = np.empty(vertices)

@@ -85,7 +85,10 @@ def checked_options(
 
 def _number(name: str, value: object) -> float:
     if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            raise OptionError(f"{name} is beyond the doubles") from None
         if not math.isnan(number):
             return number
     raise OptionError(f"{name}={value!r} is no number")
@@ -99,12 +102,23 @@ def _areas(max_area: npt.ArrayLike | None) -> float | FloatArray:
         if area <= 0.0:
             raise OptionError(f"max_area={max_area!r}; it must be positive")
         return area
-    areas = np.array(max_area, dtype=np.float64)
+    areas = _array("max_area", max_area)
+    if areas.dtype.kind not in "iuf":
+        raise OptionError(f"max_area={max_area!r} is no number, nor an array of numbers")
+    areas = areas.astype(np.float64)
     if areas.ndim != 1:
         raise ShapeError(f"max_area has shape {areas.shape}; it must be a number, or one for each triangle")
     if np.isnan(areas).any():
         raise OptionError(f"max_area of triangle {int(np.isnan(areas).argmax())} is no number")
     return np.where(areas > 0.0, areas, math.inf)
+
+
+def _array(name: str, given: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    try:
+        array: npt.NDArray[np.float64] = np.asarray(given)  # of any dtype: its kind is looked at
+    except ValueError:
+        raise ShapeError(f"{name} is ragged: not an array") from None
+    return array
 
 
 def flags_of(answer: npt.ArrayLike, count: int) -> BoolArray:
@@ -113,7 +127,7 @@ def flags_of(answer: npt.ArrayLike, count: int) -> BoolArray:
     Raises:
         ShapeError: it is no array of bools of that length.
     """
-    flags = np.asarray(answer)
+    flags: BoolArray = np.asarray(_array("the answer of unsuitable", answer))
     if flags.shape != (count,) or flags.dtype != np.bool_:
         raise ShapeError(
             f"unsuitable returned {flags.dtype} of shape {flags.shape}; it must return one bool for each of the"
@@ -129,7 +143,7 @@ def sizes_of(answer: npt.ArrayLike, count: int, at: FloatArray) -> FloatArray:
         ShapeError: it is no array of numbers of that length.
         OptionError: a size is not positive.
     """
-    sizes = np.asarray(answer)
+    sizes = _array("the answer of size", answer)
     if sizes.shape != (count,) or sizes.dtype.kind not in "iuf":
         raise ShapeError(
             f"size returned {sizes.dtype} of shape {sizes.shape}; it must return one number for each of the {count}"

@@ -16,7 +16,7 @@ from exactmesh.delaunay import MAX_POINTS, Progress
 from exactmesh.errors import OptionError
 from exactmesh.pslg import PSLG
 from exactmesh.refinement.asking import Question, area_question, ask, size_question, unsuitable_question
-from exactmesh.refinement.layout import Layout, grown, laid_out
+from exactmesh.refinement.layout import TINIEST, Layout, grown, laid_out
 from exactmesh.refinement.options import Options, Size, Steiner, Unsuitable, checked_options
 from exactmesh.refinement.outcome import refinement_of
 from exactmesh.refinement.result import Refinement
@@ -31,6 +31,7 @@ _CHUNK = 1 << 15  # steps between two looks at Ctrl-C and the progress bar, wher
 _BYTES_PER_VERTEX = 400  # three edges, and what is made of them in the end
 _OFFSET = 0.465  # of the exact off-centre's 0.5: its triangle is better than asked for, which takes fewer points
 _FILLED = 0.995  # of the largest area: the triangles of a lattice
+_FLAT = 1e-6  # below, an off-centre would be farther away than any circumcentre
 _SHRINK = 1.0 / 64.0  # how short edges may become, in radii of what caused them, before an angle is given up
 
 
@@ -52,6 +53,12 @@ def _zones(mesh: Triangulation) -> tuple[IntArray, IntArray, FloatArray, FloatAr
     return zone.astype(np.int32), region, mesh.triangle_attributes[first], areas
 
 
+def _squared(length: float, exponent: int) -> float:
+    """Return the square of length times 2^exponent, infinite where it is too large, and not 0 unless the length is."""
+    square = float(np.square(np.ldexp(length, exponent)))
+    return max(square, TINIEST) if length > 0.0 else 0.0
+
+
 def _scaled(areas: FloatArray, exponent: int) -> FloatArray:
     """Return the areas times 2^exponent.
 
@@ -68,6 +75,7 @@ def _scaled(areas: FloatArray, exponent: int) -> FloatArray:
 def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
     """Return the rules in the coordinates of the sheet."""
     cosine = math.cos(math.radians(options.min_angle))
+    tangent = math.tan(0.5 * math.radians(options.min_angle))
     # a point inside of an equilateral triangle makes angles of 30 degrees at most
     if isinstance(options.max_area, float):
         areas = np.minimum(areas, options.max_area)
@@ -78,7 +86,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
     return Rules(
         angle=angle_bound(options.min_angle),
         has_angle=options.min_angle > 0.0,
-        offset=_OFFSET * math.sqrt((1.0 + cosine) / (1.0 - cosine)) if options.min_angle > 0.0 else 0.0,
+        offset=_OFFSET / tangent if tangent > _FLAT else 0.0,
         lens=(2.0 * cosine * cosine - 1.0) ** 2,
         gabriel=options.conforming,
         areas=areas,
@@ -86,7 +94,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * (areas if options.min_angle <= 30.0 else math.inf * areas)),
         origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
         origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
-        min_edge=math.ldexp(options.min_edge, layout.exponent) ** 2,
+        min_edge=_squared(options.min_edge, layout.exponent),
         shrink=_SHRINK * _SHRINK,
         unit=layout.unit,
         longest=extent * extent,

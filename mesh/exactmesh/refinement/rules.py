@@ -13,7 +13,6 @@ from exactkernel.jit import jit_inline
 from exactkernel.measure import area_above_adaptive
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import dest, origin
-from exactmesh.plane import BoolArray
 from exactmesh.refinement.sheet import ANGLE, SIZE, Sheet, distance_squared
 
 __all__ = ["Reason", "Rules", "SteinerKind", "faults_of", "is_encroached"]
@@ -65,7 +64,7 @@ class Rules(NamedTuple):
         unit: new coordinates are multiples of it.
         longest: a squared length that is about the largest.
         ends: int32 (s, 2), the ends of the constrained edges of the input.
-        sharp: (s, 2), whether another line is less than 90 degrees away there.
+        sharp: (s, 2), the angle to the nearest other line there, radians, 0 where it is not below 90 degrees.
         max_vertices: the budget.
     """
 
@@ -84,7 +83,7 @@ class Rules(NamedTuple):
     unit: float
     longest: float
     ends: IntArray
-    sharp: BoolArray
+    sharp: FloatArray
     max_vertices: int
 
 
@@ -117,9 +116,9 @@ def is_encroached(s: Sheet, rules: Rules, e: int, p: int) -> bool:
 
 @jit_inline
 def joins_sharp_segments(s: Sheet, rules: Rules, a: int, b: int) -> bool:
-    """Tell whether ab joins two segments with a common end at equal distances from it. Reference [Miller 2003].
+    """Tell whether ab joins two segments that meet below 60 degrees, at equal distances from there.
 
-    Then the angle across from it is that of the segments, or smaller than the input's in any other mesh.
+    Reference [Miller 2003].
     """
     m, n = s.line[a], s.line[b]
     if m < 0 or n < 0 or m == n:
@@ -132,4 +131,4 @@ def joins_sharp_segments(s: Sheet, rules: Rules, a: int, b: int) -> bool:
     if joint < 0:
         return False
     first, second = distance_squared(s.xy, a, joint), distance_squared(s.xy, b, joint)
-    return bool(0.998 * second < first < 1.002 * second)
+    return bool(0.998 * second < first < 1.002 * second and distance_squared(s.xy, a, b) < first)

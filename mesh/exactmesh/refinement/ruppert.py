@@ -10,12 +10,14 @@ from exactkernel.jit import jit, jit_inline
 from exactkernel.types import FloatArray
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.refinement.insertion import (
+    close_face,
     divide_edge,
     divide_face,
     is_inside,
     legalize,
+    rejoin_edge,
     seek,
-    take_out,
+    spokes_are_delaunay,
     undo_flips,
 )
 from exactmesh.refinement.placement import is_finite, move_to_lattice, place_centre, place_centroid, shortest_edge
@@ -42,6 +44,7 @@ from exactmesh.refinement.sheet import (
 from exactmesh.refinement.split_point import split_point
 
 _WELL = 4.0  # squared: the parts of an edge are to be twice as long as the parent is away
+_HALFWAY = 0.125  # how far from the middle, in lengths of the edge, will do
 _ON_CIRCLE = 1e-4  # how far from a common circle, in lengths of the edge, will do: each of its digits costs bits
 
 __all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "mark_encroached", "run"]
@@ -164,20 +167,22 @@ def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int, parent: int) -> 
     """
     for end in range(2):
         v = rules.ends[row, end]
-        if not rules.sharp[row, end]:
+        angle = rules.sharp[row, end]
+        if angle == 0.0:
             continue
+        slack = min(_ON_CIRCLE, 0.25 * angle * angle)
         if v not in (a, b):
             t = concentric(s, a, b, v, parent)
             if t > 0.0:
-                return t, _ON_CIRCLE
+                return t, slack
         else:
             length = math.sqrt(distance_squared(s.xy, a, b))
             if length == 0.0:
                 break
             _, exponent = math.frexp(length / 1.5)
             part = math.ldexp(0.5, exponent) / length  # in (1/3, 2/3]
-            return (part if v == a else 1.0 - part), _ON_CIRCLE
-    return 0.5, 0.125
+            return (part if v == a else 1.0 - part), slack
+    return 0.5, _HALFWAY
 
 
 @jit_inline
@@ -214,6 +219,25 @@ def is_in_circle(xy: FloatArray, a: int, b: int, p: int) -> bool:
 
 
 @jit_inline
+def inherited(s: Sheet, rules: Rules, row: int, parent: int, cause: int) -> float:
+    """Return the root that a point on the row has from its parent, or 0.0 if it is one of its own.
+
+    A vertex of the input, or on a segment elsewhere, is as close as it is; one on a segment with a common end is there
+    because of what divided that.
+    """
+    if cause == _YIELDED:
+        return float(s.root[parent])
+    line = s.line[parent]
+    if cause != _ENCROACHED or s.kind[parent] == 0 or line < 0:
+        return 0.0
+    for i in range(2):
+        for j in range(2):
+            if rules.ends[row, i] == rules.ends[line, j]:
+                return float(s.root[parent])
+    return 0.0
+
+
+@jit_inline
 def first_of_link(s: Sheet, e: int, new: int) -> int:
     """Return the first edge of the link of the vertex between the fixed edges e, which ends there, and new."""
     return left_next(s.ring, new) if is_inside(s, new) else left_next(s.ring, e ^ 2)
@@ -226,23 +250,33 @@ def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> N
     a, b = origin(s.org, e), dest(s.org, e)
     row = int(s.segment[e >> 2])
     t, slack = parameter(s, rules, row, a, b, parent)
-    if slack > _ON_CIRCLE:
+    if slack == _HALFWAY:
         clear_circle(s, rules, e)
         clear_circle(s, rules, e ^ 2)
-    x, y, _ = split_point(xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], t, slack, rules.unit)
+    x, y, is_on_line = split_point(xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1], t, slack, rules.unit)
     xy[2 * p], xy[2 * p + 1] = x, y
     if not (is_finite(xy, p) and fits(s, e, p) and fits(s, e ^ 2, p)):
         s.hard[e >> 2] = _PRECISION
         return
-    if min(distance_squared(xy, a, p), distance_squared(xy, b, p)) < rules.min_edge:
-        s.hard[e >> 2] = _MINIMUM_EDGE
+    shorter, root = min(distance_squared(xy, a, p), distance_squared(xy, b, p)), inherited(s, rules, row, parent, cause)
+    if shorter < rules.shrink * root * root:
+        s.hard[e >> 2] = _TERMINATION
         return
     new = divide_edge(s, e, p)
     flips, _ = legalize(s, first_of_link(s, e, new), p)
-    s.counts[FLIPS] += flips
     first = first_of_link(s, e, new)
-    inherits = cause == _YIELDED or (cause == _ENCROACHED and s.kind[parent] != 0)
-    settle(s, nearest_squared(s, first, p), p, parent, cause & 3, s.root[parent] if inherits else 0.0, row)
+    nearest, fault = nearest_squared(s, first, p), 0
+    if nearest < rules.min_edge:
+        fault = _MINIMUM_EDGE
+    elif not is_on_line and not spokes_are_delaunay(s, first, p):
+        fault = _PRECISION
+    if fault != 0:
+        undo_flips(s, flips)
+        rejoin_edge(s, e, new)
+        s.hard[e >> 2] = fault
+        return
+    s.counts[FLIPS] += flips
+    settle(s, nearest, p, parent, cause & 3, root, row)
     accept(s, rules, first, p)
     for part in (e, e ^ 2, new, new ^ 2):
         if is_inside(s, part):
@@ -314,13 +348,8 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
 @jit_inline
 def insert_for(s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, parent: int, root: float) -> None:
     """Insert p into the triangle on the left of e, or onto e (zeros = 1), for the bad triangle of the half-edge."""
-    if zeros == 0:
-        new, on = divide_face(s, e, p), -1
-        first = e
-    else:
-        new, on = divide_edge(s, e, p), e
-        first = left_next(s.ring, new)
-    flips, walls = legalize(s, first, p)
+    new = divide_face(s, e, p) if zeros == 0 else divide_edge(s, e, p)
+    flips, walls = legalize(s, left_next(s.ring, new), p)
     first = left_next(s.ring, new)
     hits = hindrance(s, rules, p, walls)
     nearest = nearest_squared(s, first, p)
@@ -331,7 +360,10 @@ def insert_for(s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, pa
         accept(s, rules, first, p)
         return
     undo_flips(s, flips)
-    take_out(s, new, on)
+    if zeros == 0:
+        close_face(s, new)
+    else:
+        rejoin_edge(s, e, new)
     if too_near:
         give_up(s, half, _MINIMUM_EDGE)
         return
