@@ -10,7 +10,6 @@ from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.ordering import IndexArray
-from exactmesh.plane import BoolArray
 
 __all__ = ["Dual", "dual_of", "first_not_delaunay"]
 
@@ -175,28 +174,27 @@ def _fan(
 
 @jit
 def _fans(
-    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, at: IndexArray, seen: BoolArray,
-    cells: IntArray, cell_ridges: IntArray,
+    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, at: IndexArray, cells: IntArray,
+    cell_ridges: IntArray,
 ) -> None:  # fmt: skip
     """Write the entries of all cells in the order in which triangles come to their sites, which is kind to caches.
 
     Those on the boundary first: from ray to ray, and several times where the boundary meets itself. ``at`` comes as
-    where each cell begins.
+    where each cell begins, and says, by -1 - where it goes on, which cells are begun.
     """
     for t in range(len(triangles)):
         for i in range(3):
             if neighbors[t, i] < 0:
                 j = (i + 1) % 3
                 v = triangles[t, j]
-                seen[v] = True
-                cells[at[v]], cell_ridges[at[v]] = -1, ridge[t, i]
-                at[v] = _fan(triangles, neighbors, vertex, ridge, t, j, at[v] + 1, cells, cell_ridges)
+                begin = at[v] if at[v] >= 0 else -1 - at[v]
+                cells[begin], cell_ridges[begin] = -1, ridge[t, i]
+                at[v] = -1 - _fan(triangles, neighbors, vertex, ridge, t, j, begin + 1, cells, cell_ridges)
     for t in range(len(triangles)):
         for i in range(3):
             v = triangles[t, i]
-            if not seen[v]:
-                seen[v] = True
-                _fan(triangles, neighbors, vertex, ridge, t, i, at[v], cells, cell_ridges)
+            if at[v] >= 0:
+                at[v] = -1 - _fan(triangles, neighbors, vertex, ridge, t, i, at[v], cells, cell_ridges)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
@@ -214,7 +212,7 @@ def dual_of(points: FloatArray, triangles: IntArray, neighbors: IntArray, centre
     ridges = int(_ridges(triangles, neighbors, vertex, ridge, edge, ridge_points, ends, offsets[1:]))
     np.cumsum(offsets, out=offsets)
     cells, cell_ridges = (np.empty(2 * ridges, dtype=np.int32) for _ in range(2))
-    _fans(triangles, neighbors, vertex, ridge, offsets[:-1].copy(), np.zeros(n, dtype=np.bool_), cells, cell_ridges)
+    _fans(triangles, neighbors, vertex, ridge, offsets[:-1].copy(), cells, cell_ridges)
     for array, length in ((first, count), (edge, ridges), (ridge_points, ridges), (ends, ridges)):
         array.resize((length, *array.shape[1:]), refcheck=False)  # no base is left to write to
     return Dual(vertex, first, edge, ridge_points, ends, offsets, cells, cell_ridges)
