@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exactkernel.context import Context, scaled_into_window
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.incircle import incircle_adaptive
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
@@ -12,6 +12,8 @@ from exactkernel.types import FloatArray, IntArray
 from exactmesh.ordering import IndexArray
 
 __all__ = ["Dual", "dual_of", "first_not_delaunay"]
+
+_CHUNK = 1 << 20  # triangles between two looks at Ctrl-C
 
 
 class Dual(NamedTuple):
@@ -59,8 +61,10 @@ def _incircle_across(k: Context, xy: FloatArray, triangles: IntArray, neighbors:
 
 
 @jit
-def _first_conflict(k: Context, xy: FloatArray, triangles: IntArray, neighbors: IntArray) -> int:
-    for t in range(len(triangles)):
+def _first_conflict(
+    k: Context, xy: FloatArray, triangles: IntArray, neighbors: IntArray, first: int, stop: int
+) -> int:  # fmt: skip
+    for t in range(first, stop):
         for i in range(3):
             if neighbors[t, i] > t and _incircle_across(k, xy, triangles, neighbors, t, i) > 0:
                 return 3 * t + i
@@ -71,9 +75,13 @@ def _first_conflict(k: Context, xy: FloatArray, triangles: IntArray, neighbors: 
 def first_not_delaunay(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> int:
     """Return 3 t + i for the first side that is not locally Delaunay, or -1. O(m), exact."""
     xy, k = scaled_into_window(points)
-    found = int(_first_conflict(k, xy, triangles, neighbors))
-    raise_if_interrupted()
-    return found
+    step = chunk_size(k, _CHUNK)
+    for first in range(0, len(triangles), step):
+        found = int(_first_conflict(k, xy, triangles, neighbors, first, min(first + step, len(triangles))))
+        raise_if_interrupted()
+        if found >= 0:
+            return found
+    return -1
 
 
 @jit
