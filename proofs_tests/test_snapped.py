@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactmesh import PSLG
+from exactmesh import PSLG, refine, verify
 from exactmesh.crossings import arrange
 from exactmesh.errors import CrossingError, OptionError, PSLGError, ShapeError, SnappingError
 
@@ -221,6 +221,25 @@ class TestSnapped:
         with pytest.raises(CrossingError, match="arrange"):
             cross.snapped(20)
         assert len(arrange(cross).pslg.snapped(20).segments) == 4
+
+
+@pytest.mark.obligation("R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined")
+class TestCovered:
+    """Law: of a domain on a coarse grid, acute corners included, no Steiner point is off its segment."""
+
+    @pytest.mark.parametrize("bits", [10, 20])
+    @pytest.mark.parametrize(
+        "corners", [[(0, 0), (0.7, 0.1), (0.3, 0.9)], [(0, 0), (0.7, 0.1), (0.8, 0.9), (0.1, 0.7)]]
+    )
+    def test_acute_corners(self, corners: list[tuple[float, float]], bits: int) -> None:
+        domain = PSLG.from_rings([corners]).snapped(bits)
+        done = refine(domain, max_area=0.001)
+        assert done.displacement_squared == 0
+        assert verify(done.triangulation.points, done.triangulation.triangles, domain=domain).ok
+
+    def test_control_full_precision(self) -> None:
+        domain = PSLG.from_rings([[(0, 0), (0.7, 0.1), (0.3, 0.9)]])
+        assert refine(domain, max_area=0.001).displacement_squared > 0
 
 
 class TestBadInput:

@@ -49,6 +49,7 @@ class TestContract:
         found = quiet(INPUTS[name], switches)
         arrays = {key: np.asarray(array) for key, array in found.items()}
         assert told(arrays, switches in CALLS[name][1]) == CONTRACT[name][switches]
+        assert all(array.flags.owndata and array.flags.writeable for array in arrays.values())
 
     def test_control_other_shapes_are_told_apart(self) -> None:
         found = {key: np.asarray(array) for key, array in quiet(SQUARE, "e").items()}
@@ -214,6 +215,11 @@ class TestCallbacks:
         meshes = [quiet(COURSE, "pu", unsuitable=function) for function in (large, by_corners, by_list)]
         assert len(meshes[0]["vertices"]) > 10
         assert all(np.array_equal(mesh["vertices"], meshes[0]["vertices"]) for mesh in meshes)
+
+    def test_nobody_asks_without_the_switch(self) -> None:
+        with pytest.warns(TriangleWarning, match="write u"):
+            found = triangulate(COURSE, "pa0.3", unsuitable=lambda _corners, areas: areas > 0)
+        assert len(found["vertices"]) == 5
 
     def test_what_it_raises_comes_through(self) -> None:
         def broken(_corners: object, _areas: object) -> bool:

@@ -28,7 +28,8 @@ def read_naively(text: str) -> Switches | None:
     found = {letter: min(values, default=None) for letter, values in numbers.items()}
     clash = any(len(values) > 1 for values in numbers.values())
     endless = any(value == float("inf") for values in numbers.values() for value in values)
-    if clash or endless or found["a"] == 0.0 or ("w" in letters and not letters & set("prqauDs")):
+    steep = any(value > 40.0 for value in numbers["q"])
+    if clash or endless or steep or found["a"] == 0.0 or ("w" in letters and not letters & set("prqauDs")):
         return None
     return Switches(
         frozenset(Switch(letter) for letter in letters),
@@ -67,6 +68,7 @@ class TestGrammar:
     @example("a0.1aa")
     @example("YYY")
     @example("wq")
+    @example("q40")
     def test_as_the_grammar_says(self, text: str) -> None:
         expected = read_naively(text)
         if expected is not None:
@@ -119,6 +121,8 @@ TRAPS = [
     ("a0", "a0", "greater than 0"),
     ("a0.000", "a0.000", "greater than 0"),
     ("a" + "9" * 400, "a" + "9" * 400, "largest double"),
+    ("pq60", "q60", "ask for 40 at most"),
+    ("q40.5", "q40.5", "ask for 40 at most"),
     ("S1.5", "S1.5", "integer"),
     ("o", "o", "only o2"),
     ("o3", "o3", "only o2"),

@@ -312,7 +312,7 @@ def incircle_staged(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> t
 
     >>> from exactkernel import incircle_staged
     >>> incircle_staged((0, 0), (1, 0), (1, 1), (0, 1))
-    (<Sign.ZERO: 0>, <Stage.EXPANSION: 3>)
+    (<Sign.ZERO: 0>, <Stage.GRID: 1>)
     """
     doubles = doubles_of(a, b, c, d)
     if doubles is None:

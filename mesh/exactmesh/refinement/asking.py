@@ -12,7 +12,7 @@ import numpy as np
 
 from exactkernel.context import Context
 from exactkernel.jit import jit
-from exactkernel.measure import length_above_adaptive
+from exactkernel.measure import area_above_adaptive, length_above_adaptive
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.edgealgebra import left_next, origin
 from exactmesh.plane import BoolArray
@@ -68,7 +68,15 @@ def size_question(size: Size, k: Context) -> Question:
     return answer
 
 
-def area_question(mesh: Triangulation, max_area: FloatArray) -> Question:
+@jit
+def is_too_large(k: Context, corners: FloatArray, areas: FloatArray, answer: BoolArray) -> None:
+    """Tell for each triangle whether it is larger than the area given for it."""
+    for t in range(len(corners)):
+        a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
+        answer[t] = area_above_adaptive(k, areas[t], a[0], a[1], b[0], b[1], c[0], c[1])
+
+
+def area_question(mesh: Triangulation, max_area: FloatArray, k: Context) -> Question:
     """Return the question whether triangles are larger than allowed in that triangle of a mesh where their centroid is.
 
     A centroid that rounding puts outside of the mesh allows everything.
@@ -76,8 +84,9 @@ def area_question(mesh: Triangulation, max_area: FloatArray) -> Question:
     allowed = np.append(max_area, np.inf)
 
     def answer(corners: FloatArray) -> BoolArray:
-        larger: BoolArray = areas_of(corners) > allowed[mesh.locate(corners.mean(axis=1))]
-        return larger
+        found = np.zeros(len(corners), dtype=np.bool_)
+        is_too_large(k, corners, allowed[mesh.locate(corners.mean(axis=1))], found)
+        return found
 
     return answer
 

@@ -35,7 +35,7 @@ class Layout(NamedTuple):
         unit: new coordinates of the sheet are to be multiples of it.
         rows: int32 (r, 2), the fixed edges: the segments of the triangulation, then the other edges of its boundary.
         lines: int32 (r, 2), the ends of the straight line that each is part of: see ``lines_of``.
-        sharp: bool (r, 2), whether another line leaves those ends within 60 degrees.
+        sharp: bool (r, 2), whether another line leaves those ends at less than 90 degrees.
     """
 
     sheet: Sheet
@@ -94,7 +94,7 @@ def mark_sharp(
     xy: FloatArray, ring: EdgeArray, org: EdgeArray, zone: EdgeArray, segment: EdgeArray, lines: IntArray,
     sharp: BoolArray,
 ) -> None:  # fmt: skip
-    """Mark the ends of lines from which, through the domain, the next fixed edge is less than 60 degrees away."""
+    """Mark the ends of lines from which, through the domain, the next fixed edge is less than 90 degrees away."""
     for e in range(0, 4 * len(segment), 2):
         if segment[e >> 2] < 0 or zone[e >> 1] == OUTSIDE:
             continue

@@ -38,13 +38,18 @@ def bucket_of(unit: float, squared: float, is_skinny: bool) -> int:
 
 @jit_inline
 def enqueue(s: Sheet, half: int, bucket: int) -> None:
-    """Put a half-edge that is in no bucket at the front of one: what is new is in the cache."""
+    """Put a half-edge that is in no bucket into one.
+
+    Skinny triangles wait their turn, for that takes fewer points; of the large ones the newest is first, for it is
+    still in the cache.
+    """
     node = BUCKETS + half
-    first = s.after[bucket]
-    s.before[first] = node
-    s.after[node] = first
-    s.before[node] = bucket
-    s.after[bucket] = node
+    left = s.before[bucket] if bucket < BUCKETS // 2 else bucket
+    right = s.after[left]
+    s.after[left] = node
+    s.before[node] = left
+    s.after[node] = right
+    s.before[right] = node
     s.counts[TOP] = max(s.counts[TOP], bucket)
 
 

@@ -65,7 +65,7 @@ class Rules(NamedTuple):
         unit: new coordinates are multiples of it.
         longest: a squared length that is about the largest.
         ends: int32 (s, 2), the ends of the constrained edges of the input.
-        sharp: (s, 2), whether another constrained edge is within 60 degrees there.
+        sharp: (s, 2), whether another line is less than 90 degrees away there.
         max_vertices: the budget.
     """
 

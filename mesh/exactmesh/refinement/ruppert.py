@@ -42,7 +42,7 @@ from exactmesh.refinement.sheet import (
 from exactmesh.refinement.split_point import split_point
 
 _WELL = 4.0  # squared: the parts of an edge are to be twice as long as the parent is away
-_ON_CIRCLE = 1e-9  # how far from a common circle, in lengths of the edge, will do
+_ON_CIRCLE = 1e-4  # how far from a common circle, in lengths of the edge, will do: each of its digits costs bits
 
 __all__ = ["BUDGET", "DONE", "MORE", "ROOM", "judge_all", "mark_encroached", "run"]
 

@@ -9,8 +9,6 @@ reason, not the nearest one: what it leaves are bits for the halves.
 
 import math
 
-import numpy as np
-
 from exactkernel.expansions import fast_two_sum, two_diff, two_product, two_sum
 from exactkernel.jit import jit
 
@@ -70,7 +68,7 @@ def _along(a: float, d: float, d_tail: float, s: float) -> tuple[float, float]:
 @jit
 def _is_multiple(x: float, unit: float) -> bool:
     steps = x / unit
-    return bool(abs(x) >= _FINEST * unit or steps == np.floor(steps))
+    return abs(x) >= _FINEST * unit or steps == float(math.floor(steps))
 
 
 @jit
@@ -106,7 +104,7 @@ def _rounded(a: float, b: float, d: float, d_tail: float, t: float, unit: float)
     else:
         x = (1.0 - t) * a + t * b
     if abs(x) < _FINEST * unit:
-        x = np.floor(x / unit + 0.5) * unit
+        x = float(math.floor(x / unit + 0.5)) * unit
     return min(max(x, min(a, b)), max(a, b))
 
 
@@ -149,8 +147,8 @@ def split_point(
         most = min(_most_halves(ax, dx, dx_tail, low, high), _most_halves(ay, dy, dy_tail, low, high))
         halves = 2.0
         while halves <= most:
-            k = np.floor(t * halves)
-            s = (k if np.floor(0.5 * k) * 2.0 != k else k + 1.0) / halves  # the other one has been tried before
+            k = math.floor(t * halves)
+            s = (k | 1) / halves  # of k and k + 1 the odd one; the other has been tried before
             if abs(s - t) <= slack:
                 x, x_low = _along(ax, dx, dx_tail, s)
                 if x_low == 0.0 and _is_multiple(x, unit):

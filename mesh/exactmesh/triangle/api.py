@@ -64,7 +64,8 @@ def triangulate(
     given = given_of(tri, refines=switches.asks(Switch.REFINE))
     solution = answered(given, switches, unsuitable, progress)
     only_files = (f"{s}: {MEANINGS[s]}" for s in (Switch.VORONOI, Switch.GEOMVIEW) if switches.asks(s))
-    for note in (*switches.notes(), *only_files, *solution.notes):
+    unasked = ("unsuitable is not asked: write u",) if unsuitable is not None and "u" not in switches.given else ()
+    for note in (*switches.notes(), *only_files, *unasked, *solution.notes):
         warnings.warn(note, TriangleWarning, stacklevel=2)
     return dictionary_of(given, switches, solution)
 

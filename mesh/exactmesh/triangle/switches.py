@@ -11,6 +11,7 @@ from decimal import Decimal
 from enum import StrEnum
 from typing import NoReturn
 
+from exactmesh.refinement.options import MAX_ANGLE
 from exactmesh.triangle.errors import SwitchError
 
 __all__ = ["MEANINGS", "Switch", "Switches", "parse"]
@@ -282,6 +283,8 @@ class _Reader:
             self.fail("beyond the largest double", start, self.at)
         if switch is Switch.AREA and value == 0.0:
             self.fail("an area must be greater than 0", start, self.at)
+        if switch is Switch.QUALITY and value > MAX_ANGLE:
+            self.fail(f"more than refinement can promise: ask for {MAX_ANGLE:g} at most", start, self.at)
         if switch is Switch.STEINER and not number[0].isdigit():
             self.fail("a number of vertices is an integer", start, self.at)
         return value
