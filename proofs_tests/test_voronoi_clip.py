@@ -11,7 +11,7 @@ from proofs_tests import oracles
 from proofs_tests.mesh_strategies import point_sets
 from proofs_tests.voronoi_oracle import area, cell_of, corners_of, fractions_of, nearest_double
 
-from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, voronoi
+from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, refine, voronoi
 from exactmesh.errors import (
     ChoiceError,
     ClipError,
@@ -261,6 +261,12 @@ class TestDomain:
             assert corners_of([*map(fractions_of, inside.exact_polygon(i))]) == corners_of(
                 [*map(fractions_of, clipped.exact_polygon(i))]
             )
+
+    def test_refined(self) -> None:
+        """What refine calls conforming is."""
+        corners = [(0, 0), (7, 1), (12, 0), (11, 6), (6, 2), (5, 9), (1, 8)]
+        mesh = refine(PSLG.from_rings([corners]), min_angle=20.0, conforming=True).triangulation
+        assert domain_faults(mesh, cells_of(voronoi(mesh, clip="domain"))) == []
 
     def test_not_conforming(self) -> None:
         with pytest.raises(NotConformingError, match=r"beyond edge \(0, 1\) of the boundary") as caught:

@@ -164,7 +164,7 @@ class Cells:
         """Return the exact corners of polygon i.
 
         >>> from exactmesh import voronoi
-        >>> voronoi([(0, 0), (1, 0)], clip=(-1, -1, 2, 1)).clipped.exact_polygon(0)[2]
+        >>> voronoi([(0, 0), (1, 0)], clip=(-1, -1, 2, 1)).clipped.exact_polygon(0)[3]
         (mpq(1,2), mpq(-1,1))
         """
         return [self.exact_corner(j) for j in range(self.offsets[i], self.offsets[i + 1])]

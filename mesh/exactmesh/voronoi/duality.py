@@ -4,15 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exactkernel.context import Context, scaled_into_window
+from exactkernel.context import Context, chunk_size, scaled_into_window
 from exactkernel.incircle import incircle_adaptive
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.ordering import IndexArray
-from exactmesh.plane import BoolArray
 
 __all__ = ["Dual", "dual_of", "first_not_delaunay"]
+
+_CHUNK = 1 << 20  # triangles between two looks at Ctrl-C
 
 
 class Dual(NamedTuple):
@@ -60,8 +61,10 @@ def _incircle_across(k: Context, xy: FloatArray, triangles: IntArray, neighbors:
 
 
 @jit
-def _first_conflict(k: Context, xy: FloatArray, triangles: IntArray, neighbors: IntArray) -> int:
-    for t in range(len(triangles)):
+def _first_conflict(
+    k: Context, xy: FloatArray, triangles: IntArray, neighbors: IntArray, first: int, stop: int
+) -> int:  # fmt: skip
+    for t in range(first, stop):
         for i in range(3):
             if neighbors[t, i] > t and _incircle_across(k, xy, triangles, neighbors, t, i) > 0:
                 return 3 * t + i
@@ -72,9 +75,13 @@ def _first_conflict(k: Context, xy: FloatArray, triangles: IntArray, neighbors: 
 def first_not_delaunay(points: FloatArray, triangles: IntArray, neighbors: IntArray) -> int:
     """Return 3 t + i for the first side that is not locally Delaunay, or -1. O(m), exact."""
     xy, k = scaled_into_window(points)
-    found = int(_first_conflict(k, xy, triangles, neighbors))
-    raise_if_interrupted()
-    return found
+    step = chunk_size(k, _CHUNK)
+    for first in range(0, len(triangles), step):
+        found = int(_first_conflict(k, xy, triangles, neighbors, first, min(first + step, len(triangles))))
+        raise_if_interrupted()
+        if found >= 0:
+            return found
+    return -1
 
 
 @jit
@@ -175,28 +182,27 @@ def _fan(
 
 @jit
 def _fans(
-    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, at: IndexArray, seen: BoolArray,
-    cells: IntArray, cell_ridges: IntArray,
+    triangles: IntArray, neighbors: IntArray, vertex: IntArray, ridge: IntArray, at: IndexArray, cells: IntArray,
+    cell_ridges: IntArray,
 ) -> None:  # fmt: skip
     """Write the entries of all cells in the order in which triangles come to their sites, which is kind to caches.
 
     Those on the boundary first: from ray to ray, and several times where the boundary meets itself. ``at`` comes as
-    where each cell begins.
+    where each cell begins, and says, by -1 - where it goes on, which cells are begun.
     """
     for t in range(len(triangles)):
         for i in range(3):
             if neighbors[t, i] < 0:
                 j = (i + 1) % 3
                 v = triangles[t, j]
-                seen[v] = True
-                cells[at[v]], cell_ridges[at[v]] = -1, ridge[t, i]
-                at[v] = _fan(triangles, neighbors, vertex, ridge, t, j, at[v] + 1, cells, cell_ridges)
+                begin = at[v] if at[v] >= 0 else -1 - at[v]
+                cells[begin], cell_ridges[begin] = -1, ridge[t, i]
+                at[v] = -1 - _fan(triangles, neighbors, vertex, ridge, t, j, begin + 1, cells, cell_ridges)
     for t in range(len(triangles)):
         for i in range(3):
             v = triangles[t, i]
-            if not seen[v]:
-                seen[v] = True
-                _fan(triangles, neighbors, vertex, ridge, t, i, at[v], cells, cell_ridges)
+            if at[v] >= 0:
+                at[v] = -1 - _fan(triangles, neighbors, vertex, ridge, t, i, at[v], cells, cell_ridges)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # interpreted, a numpy scalar warns where a double does not
@@ -214,7 +220,7 @@ def dual_of(points: FloatArray, triangles: IntArray, neighbors: IntArray, centre
     ridges = int(_ridges(triangles, neighbors, vertex, ridge, edge, ridge_points, ends, offsets[1:]))
     np.cumsum(offsets, out=offsets)
     cells, cell_ridges = (np.empty(2 * ridges, dtype=np.int32) for _ in range(2))
-    _fans(triangles, neighbors, vertex, ridge, offsets[:-1].copy(), np.zeros(n, dtype=np.bool_), cells, cell_ridges)
+    _fans(triangles, neighbors, vertex, ridge, offsets[:-1].copy(), cells, cell_ridges)
     for array, length in ((first, count), (edge, ridges), (ridge_points, ridges), (ends, ridges)):
         array.resize((length, *array.shape[1:]), refcheck=False)  # no base is left to write to
     return Dual(vertex, first, edge, ridge_points, ends, offsets, cells, cell_ridges)
