@@ -1,4 +1,4 @@
-"""What refine takes besides the plainest: other domains of a graph, lengths as numbers; and what it says to the rest."""
+"""What refine takes besides the plainest: other domains of a graph, lengths as numbers; what it tells the rest."""
 
 from fractions import Fraction
 

@@ -1,5 +1,7 @@
 """Refinement: points added to a constrained Delaunay triangulation until its triangles are as good as asked for."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Natural neighbours, and interpolation by Sibson's coordinates."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -43,7 +45,7 @@ class NaturalNeighbors:
     sites: IntArray
     weights: FloatArray
 
-    def __reduce__(self) -> "tuple[type[NaturalNeighbors], tuple[object, ...]]":
+    def __reduce__(self) -> tuple[type[NaturalNeighbors], tuple[object, ...]]:
         # copies and pickles are made anew: numpy does not pass on that an array is read-only
         return NaturalNeighbors, tuple(getattr(self, f.name) for f in fields(self))
 

@@ -1,5 +1,7 @@
 """Lloyd's relaxation: every site moves to the centroid of its cell, again and again."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import operator
 from dataclasses import dataclass
 
