@@ -71,7 +71,8 @@ class TestVersion:
 
     def test_the_distribution_takes_it_from_the_package(self) -> None:
         project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-        assert project["project"]["dynamic"] == ["version"] and "version" not in project["project"]
+        assert project["project"]["dynamic"] == ["version"]
+        assert "version" not in project["project"]
         assert project["tool"]["hatch"]["version"]["path"] == "mesh/exactmesh/__init__.py"
 
 

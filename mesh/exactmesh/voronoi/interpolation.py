@@ -81,7 +81,7 @@ def natural_neighbors(points_or_mesh: npt.ArrayLike | Triangulation, at: npt.Arr
 
     Expected O(k) after location for points among random sites. Reference [Sibson 1981].
 
-    >>> from exactmesh.voronoi import natural_neighbors
+    >>> from exactmesh import natural_neighbors
     >>> found = natural_neighbors([(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (0, 2), (0.5, 0)])
     >>> found.offsets.tolist(), found.weights.tolist()
     ([0, 4, 5, 7], [0.25, 0.25, 0.25, 0.25, 1.0, 0.75, 0.25])
@@ -209,7 +209,7 @@ def interpolate(points_or_mesh: npt.ArrayLike | Triangulation, values: npt.Array
 
     Reference [Sibson 1981].
 
-    >>> from exactmesh.voronoi import interpolate
+    >>> from exactmesh import interpolate
     >>> interpolate([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)], [0, 2, 4, 2, 2], [(0.25, 0.75), (3, 3)]).tolist()
     [1.0, nan]
     """
