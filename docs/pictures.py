@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from PIL import Image  # comes with matplotlib
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, refine, triangle, voronoi
+from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, lloyd, refine, triangle, voronoi
 from exactmesh.demo import course_points, lake, mosaic
 from exactmesh.plane import BoolArray
 from exactmesh.plot import plot_mesh, plot_voronoi
-from exactmesh.voronoi import lloyd
 
 HERE = Path(__file__).resolve().parent / "_static"
 

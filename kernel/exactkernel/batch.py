@@ -1,5 +1,7 @@
 """The predicates over arrays: float64 of shape (n, 2) or (2,), broadcast against each other, int8 signs out."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import numpy as np
 import numpy.typing as npt
 

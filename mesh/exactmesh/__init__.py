@@ -12,6 +12,7 @@ from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, ar
 from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
+    BoundError,
     ChoiceError,
     ClipError,
     CollinearPointsError,
@@ -47,12 +48,23 @@ from exactmesh.quality import Statistics
 from exactmesh.refinement import Reason, Refinement, Steiner, SteinerKind, refine
 from exactmesh.triangulation import Triangulation, Work
 from exactmesh.verify import Orientation, Property, Report, Verdict, VerificationError, Violation, verify
-from exactmesh.voronoi import Voronoi, voronoi
+from exactmesh.voronoi import (
+    NaturalNeighbors,
+    Relaxation,
+    Voronoi,
+    interpolate,
+    lloyd,
+    natural_neighbors,
+    voronoi,
+)
+
+__version__ = "0.1.0"
 
 __all__ = [
     "OUTSIDE",
     "PSLG",
     "Arrangement",
+    "BoundError",
     "Carve",
     "ChoiceError",
     "ClipError",
@@ -73,6 +85,7 @@ __all__ = [
     "GeometryError",
     "InadmissibleError",
     "Meeting",
+    "NaturalNeighbors",
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
@@ -85,6 +98,7 @@ __all__ = [
     "QuarterEdge",
     "Reason",
     "Refinement",
+    "Relaxation",
     "Report",
     "Rounding",
     "SeedError",
@@ -108,14 +122,18 @@ __all__ = [
     "Violation",
     "Voronoi",
     "Work",
+    "__version__",
     "arrange",
     "constrained_delaunay",
     "delaunay",
     "find_crossings",
     "flip",
+    "interpolate",
     "is_flippable",
     "is_locally_delaunay",
     "lawson",
+    "lloyd",
+    "natural_neighbors",
     "refine",
     "verify",
     "voronoi",

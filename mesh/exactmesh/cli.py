@@ -6,11 +6,11 @@ Imports stand where they are needed, so that ``--help`` and a wrong path answer 
 import os
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Annotated, BinaryIO
 
 import typer
 
+from exactmesh import __version__
 from exactmesh.cli_arguments import carve_rule, require_file
 from exactmesh.triangulate_command import triangulate
 
@@ -39,7 +39,7 @@ _Mesh = Annotated[str, typer.Argument(metavar="MESH", help="A .ele (its .node be
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"exactmesh {version('exactmesh')}")
+        typer.echo(f"exactmesh {__version__}")
         raise typer.Exit
 
 

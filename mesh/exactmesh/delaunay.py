@@ -6,6 +6,8 @@ the ghost triangle (v, u, ghost), whose circumdisk is the open half plane outsid
 same path as those inside. Reference [Guibas 1985], [Lawson 1977], [Amenta 2003], [Shewchuk 1997].
 """
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Callable
 from typing import NamedTuple, TypeAlias
 

@@ -1,5 +1,7 @@
 """What exactmesh raises beyond the kernel's errors; every message names the culprit."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -144,7 +146,7 @@ class TopologyError(ExactMeshError):
 class InadmissibleError(ExactMeshError):
     """The triangles are no triangulation of the points' hull; ``report`` says why, with witnesses."""
 
-    def __init__(self, message: str, *, report: "Report", indices: Sequence[int] = ()) -> None:
+    def __init__(self, message: str, *, report: Report, indices: Sequence[int] = ()) -> None:
         super().__init__(message, indices=indices)
         self.report = report
 

@@ -5,6 +5,8 @@ so the algorithm ends; with the perturbed test it ends in one and the same trian
 Reference [Lawson 1977], [Edelsbrunner 2001].
 """
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Sequence
 from typing import TypeAlias
 

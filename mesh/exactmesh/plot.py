@@ -1,5 +1,7 @@
 """Pictures of meshes, by matplotlib (the extra ``plot``)."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import io
 import os
 from typing import TYPE_CHECKING, BinaryIO
@@ -108,7 +110,7 @@ def _place_of(path: str | os.PathLike[str]) -> tuple[str, str]:
     return place, suffix
 
 
-def _save(figure: "Figure", place: str, suffix: str) -> None:
+def _save(figure: Figure, place: str, suffix: str) -> None:
     picture = io.BytesIO()
     metadata = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
     figure.savefig(picture, format=suffix[1:], dpi=_DPI, bbox_inches="tight", pad_inches=0.15, metadata=metadata)
@@ -119,7 +121,7 @@ def _save(figure: "Figure", place: str, suffix: str) -> None:
     write_whole({place: write_to})
 
 
-def _canvas(drawn: FloatArray) -> "tuple[Figure, Axes]":
+def _canvas(drawn: FloatArray) -> tuple[Figure, Axes]:
     """Return an empty figure for what fills that part of the unit square."""
     try:
         from matplotlib.figure import Figure
@@ -135,7 +137,7 @@ def _canvas(drawn: FloatArray) -> "tuple[Figure, Axes]":
     return figure, axes
 
 
-def _figure(mesh: Mesh, triangles: IntArray, title: str | None) -> "Figure":
+def _figure(mesh: Mesh, triangles: IntArray, title: str | None) -> Figure:
     points = mesh.points
     unit = np.ldexp(points, -int(np.frexp(np.abs(points).max())[1]))  # no difference overflows
     drawn = _in_unit_box(unit)
@@ -151,7 +153,7 @@ def _figure(mesh: Mesh, triangles: IntArray, title: str | None) -> "Figure":
     return figure
 
 
-def _voronoi_figure(diagram: Voronoi, cells: Cells, title: str | None) -> "Figure":
+def _voronoi_figure(diagram: Voronoi, cells: Cells, title: str | None) -> Figure:
     exponent = -int(np.frexp(np.abs(cells.corners).max(initial=0.0))[1])
     corners, sites = np.ldexp(cells.corners, exponent), np.ldexp(diagram.points, exponent)
     low = corners.min(axis=0)
@@ -171,7 +173,7 @@ def _voronoi_figure(diagram: Voronoi, cells: Cells, title: str | None) -> "Figur
     return figure
 
 
-def _draw_cells(axes: "Axes", drawn: FloatArray, cells: Cells) -> None:
+def _draw_cells(axes: Axes, drawn: FloatArray, cells: Cells) -> None:
     from matplotlib.collections import PolyCollection
 
     polygons = np.split(drawn, cells.offsets[1:-1])
@@ -185,7 +187,7 @@ def _draw_cells(axes: "Axes", drawn: FloatArray, cells: Cells) -> None:
     )
 
 
-def _draw_points(axes: "Axes", drawn: FloatArray) -> None:
+def _draw_points(axes: Axes, drawn: FloatArray) -> None:
     if len(drawn) <= _POINTS_DRAWN:
         size = np.clip(2500.0 / len(drawn), 0.8, 22.0)
         axes.scatter(drawn[:, 0], drawn[:, 1], s=size, c=_INK, linewidths=0, zorder=3)
@@ -198,7 +200,7 @@ def _in_unit_box(points: FloatArray) -> FloatArray:
     return near / extent if extent > 0.0 else near
 
 
-def _draw_triangles(axes: "Axes", drawn: FloatArray, triangles: IntArray, smallest: FloatArray) -> None:
+def _draw_triangles(axes: Axes, drawn: FloatArray, triangles: IntArray, smallest: FloatArray) -> None:
     from matplotlib.collections import PolyCollection
 
     if not len(triangles):
@@ -221,19 +223,19 @@ def _draw_triangles(axes: "Axes", drawn: FloatArray, triangles: IntArray, smalle
         _draw_lines(axes, drawn[shown], width, _INK)
 
 
-def _draw_lines(axes: "Axes", lines: FloatArray, width: float, color: str) -> None:
+def _draw_lines(axes: Axes, lines: FloatArray, width: float, color: str) -> None:
     from matplotlib.collections import LineCollection
 
     axes.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]  # as above
 
 
-def _write_caption(figure: "Figure", points: FloatArray, angles: FloatArray, title: str | None) -> None:
+def _write_caption(figure: Figure, points: FloatArray, angles: FloatArray, title: str | None) -> None:
     counts = f"{len(points):,} points, {len(angles):,} triangles"
     if len(angles):
         counts += f", angles {angles.min():.3g}° to {angles.max():.6g}° (colour: the smallest of each triangle)"
     _write(figure, counts, title)
 
 
-def _write(figure: "Figure", counts: str, title: str | None) -> None:
+def _write(figure: Figure, counts: str, title: str | None) -> None:
     text = counts if title is None else f"{title}\n{counts}"
     figure.text(0.5, -0.02, text, ha="center", va="top", color=_INK, fontsize=11, linespacing=1.6)

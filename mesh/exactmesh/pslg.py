@@ -1,5 +1,7 @@
 """The input of constrained triangulations: a planar straight line graph, validated once, then immutable."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
@@ -189,7 +191,7 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         return cls._of(pieces_of_geojson(source))
 
     @classmethod
-    def from_shapely(cls, geometry: "BaseGeometry | Iterable[BaseGeometry]") -> Self:
+    def from_shapely(cls, geometry: BaseGeometry | Iterable[BaseGeometry]) -> Self:
         """Return the PSLG of one shapely geometry or of several, to be carved by even-odd. Needs the extra ``shapely``.
 
         Rings of polygons and lines become segments, points become points, in their order, bit for bit.
@@ -251,7 +253,7 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         alone[self.segments] = False
         return geojson_of(self.rings(), self.points[alone])
 
-    def to_shapely(self) -> "Polygon | MultiPolygon":
+    def to_shapely(self) -> Polygon | MultiPolygon:
         """Return the domain, by the rule and the seeds of holes, as a shapely polygon. Needs the extra ``shapely``.
 
         This is exchange, by shapely's arithmetic. Which faces belong to the domain is decided exactly, and vertices are
@@ -268,7 +270,7 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         for name, value in content.items():
             object.__setattr__(self, name, frozen(value) if isinstance(value, np.ndarray) else value)
 
-    def with_rule(self, rule: Carve | str) -> "PSLG":
+    def with_rule(self, rule: Carve | str) -> PSLG:
         """Return the same graph with another rule for its domain. O(1).
 
         >>> from exactmesh import PSLG
@@ -279,7 +281,7 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         other.__setstate__({**{f.name: getattr(self, f.name) for f in fields(self)}, "rule": Carve(rule)})
         return other
 
-    def snapped(self, bits: int) -> "PSLG":
+    def snapped(self, bits: int) -> PSLG:
         """Return the same graph on a grid, so that its segments can be halved exactly.
 
         Let E be the smallest power of two that is at least the extent of the points in x and in y, and R one that is at
@@ -319,7 +321,7 @@ points from 0); segment 2 begins and ends in point 2 (leave it out)
         content = {f.name: getattr(self, f.name) for f in fields(self) if f.init}
         return PSLG(**{**content, "points": to.points, "holes": to.holes, "regions": to.regions})
 
-    def displacement_squared(self, other: "PSLG") -> mpq:
+    def displacement_squared(self, other: PSLG) -> mpq:
         """Return the exact square of the largest distance of a point from the one of the same number in another PSLG.
 
         Raises:

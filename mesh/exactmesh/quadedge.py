@@ -15,6 +15,8 @@ primal edge runs between vertices, a dual one between faces, and they are differ
 Reference [Guibas 1985].
 """
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar, overload
@@ -61,10 +63,10 @@ class _QuarterTurn:
         self._turns = turns
 
     @overload
-    def __get__(self, edge: "Edge[Primal]", owner: object = None) -> "Edge[Dual]": ...
+    def __get__(self, edge: Edge[Primal], owner: object = None) -> Edge[Dual]: ...
     @overload
-    def __get__(self, edge: "Edge[Dual]", owner: object = None) -> "Edge[Primal]": ...
-    def __get__(self, edge: "Edge[Primal] | Edge[Dual]", owner: object = None) -> "Edge[Primal] | Edge[Dual]":
+    def __get__(self, edge: Edge[Dual], owner: object = None) -> Edge[Primal]: ...
+    def __get__(self, edge: Edge[Primal] | Edge[Dual], owner: object = None) -> Edge[Primal] | Edge[Dual]:
         turn = algebra.rot if self._turns == 1 else algebra.inv_rot
         return Edge(edge.structure, QuarterEdge(turn(edge.index)))
 
@@ -75,7 +77,7 @@ class _Label:
     def __init__(self, turns: int) -> None:
         self._turns = turns
 
-    def _of(self, edge: "Edge[Primal] | Edge[Dual]") -> int:
+    def _of(self, edge: Edge[Primal] | Edge[Dual]) -> int:
         return edge.structure.label(QuarterEdge((edge.index & ~3) | ((edge.index + self._turns) & 3)))
 
 
@@ -83,10 +85,10 @@ class _End(_Label):
     """The property ``org`` or ``dest``: a vertex of a primal edge, a face of a dual one."""
 
     @overload
-    def __get__(self, edge: "Edge[Primal]", owner: object = None) -> Vertex: ...
+    def __get__(self, edge: Edge[Primal], owner: object = None) -> Vertex: ...
     @overload
-    def __get__(self, edge: "Edge[Dual]", owner: object = None) -> Face: ...
-    def __get__(self, edge: "Edge[Primal] | Edge[Dual]", owner: object = None) -> int:
+    def __get__(self, edge: Edge[Dual], owner: object = None) -> Face: ...
+    def __get__(self, edge: Edge[Primal] | Edge[Dual], owner: object = None) -> int:
         return self._of(edge)
 
 
@@ -94,10 +96,10 @@ class _Side(_Label):
     """The property ``left`` or ``right``: a face of a primal edge, a vertex of a dual one."""
 
     @overload
-    def __get__(self, edge: "Edge[Primal]", owner: object = None) -> Face: ...
+    def __get__(self, edge: Edge[Primal], owner: object = None) -> Face: ...
     @overload
-    def __get__(self, edge: "Edge[Dual]", owner: object = None) -> Vertex: ...
-    def __get__(self, edge: "Edge[Primal] | Edge[Dual]", owner: object = None) -> int:
+    def __get__(self, edge: Edge[Dual], owner: object = None) -> Vertex: ...
+    def __get__(self, edge: Edge[Primal] | Edge[Dual], owner: object = None) -> int:
         return self._of(edge)
 
 
@@ -110,7 +112,7 @@ class Edge(Generic[Kind]):
         index: the quarter-edge, ``4 * edge + quarter turns``.
     """
 
-    structure: "QuadEdge"
+    structure: QuadEdge
     index: QuarterEdge
 
     def __repr__(self) -> str:
@@ -118,7 +120,7 @@ class Edge(Generic[Kind]):
         ends = (self.structure.label(QuarterEdge(end)) for end in (self.index, algebra.sym(self.index)))
         return f"Edge[{kind}]({' -> '.join(map(str, ends))})"
 
-    def _to(self, index: int) -> "Edge[Kind]":
+    def _to(self, index: int) -> Edge[Kind]:
         return Edge(self.structure, QuarterEdge(index))
 
     rot = _QuarterTurn(1)
@@ -129,47 +131,47 @@ class Edge(Generic[Kind]):
     right = _Side(1)
 
     @property
-    def sym(self) -> "Edge[Kind]":
+    def sym(self) -> Edge[Kind]:
         """The same edge backwards."""
         return self._to(algebra.sym(self.index))
 
     @property
-    def onext(self) -> "Edge[Kind]":
+    def onext(self) -> Edge[Kind]:
         """The next edge counterclockwise with the same origin."""
         return self._to(algebra.onext(self._ring, self.index))
 
     @property
-    def oprev(self) -> "Edge[Kind]":
+    def oprev(self) -> Edge[Kind]:
         """The next edge clockwise with the same origin."""
         return self._to(algebra.oprev(self._ring, self.index))
 
     @property
-    def dnext(self) -> "Edge[Kind]":
+    def dnext(self) -> Edge[Kind]:
         """The next edge counterclockwise with the same destination."""
         return self._to(algebra.dnext(self._ring, self.index))
 
     @property
-    def dprev(self) -> "Edge[Kind]":
+    def dprev(self) -> Edge[Kind]:
         """The next edge clockwise with the same destination."""
         return self._to(algebra.dprev(self._ring, self.index))
 
     @property
-    def lnext(self) -> "Edge[Kind]":
+    def lnext(self) -> Edge[Kind]:
         """The next edge counterclockwise round the left face."""
         return self._to(algebra.lnext(self._ring, self.index))
 
     @property
-    def lprev(self) -> "Edge[Kind]":
+    def lprev(self) -> Edge[Kind]:
         """The next edge clockwise round the left face."""
         return self._to(algebra.lprev(self._ring, self.index))
 
     @property
-    def rnext(self) -> "Edge[Kind]":
+    def rnext(self) -> Edge[Kind]:
         """The next edge counterclockwise round the right face."""
         return self._to(algebra.rnext(self._ring, self.index))
 
     @property
-    def rprev(self) -> "Edge[Kind]":
+    def rprev(self) -> Edge[Kind]:
         """The next edge clockwise round the right face."""
         return self._to(algebra.rprev(self._ring, self.index))
 
@@ -177,7 +179,7 @@ class Edge(Generic[Kind]):
     def _ring(self) -> EdgeArray:
         return self.structure.ring_of(self.index)
 
-    def orbit(self) -> "Iterator[Edge[Kind]]":
+    def orbit(self) -> Iterator[Edge[Kind]]:
         """Yield the edges with this origin, counterclockwise, from this one on."""
         edge = self
         while True:
@@ -186,7 +188,7 @@ class Edge(Generic[Kind]):
             if edge == self:
                 return
 
-    def face(self) -> "Iterator[Edge[Kind]]":
+    def face(self) -> Iterator[Edge[Kind]]:
         """Yield the edges round the left face, counterclockwise, from this one on."""
         edge = self
         while True:
@@ -268,7 +270,7 @@ class QuadEdge:
         self._free: list[int] = []
 
     @classmethod
-    def from_arrays(cls, ring: EdgeArray, vertex: EdgeArray, face: EdgeArray) -> "QuadEdge":
+    def from_arrays(cls, ring: EdgeArray, vertex: EdgeArray, face: EdgeArray) -> QuadEdge:
         """Wrap flat arrays, which are not copied.
 
         Args:
@@ -293,7 +295,7 @@ class QuadEdge:
         return self
 
     @classmethod
-    def from_triangles(cls, triangles: npt.ArrayLike, neighbors: IntArray | None = None) -> "QuadEdge":
+    def from_triangles(cls, triangles: npt.ArrayLike, neighbors: IntArray | None = None) -> QuadEdge:
         """Return the quad-edge of triangles that cover a region without pinches: its faces are their row numbers.
 
         Args:

@@ -1,5 +1,7 @@
 """The frozen result: arrays that cannot be changed, and what can be asked of them."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -119,7 +121,7 @@ class Triangulation:
     triangle_attributes: FloatArray = field(default_factory=_no_columns)
     triangle_regions: IntArray = field(default_factory=_no_pairs)
 
-    def __reduce__(self) -> "tuple[type[Triangulation], tuple[object, ...]]":
+    def __reduce__(self) -> tuple[type[Triangulation], tuple[object, ...]]:
         # copies and pickles are made anew: numpy does not pass on that an array is read-only
         return Triangulation, tuple(getattr(self, f.name) for f in fields(self))
 
@@ -286,7 +288,7 @@ class Triangulation:
         """Return counts, angles, areas and lengths, in plain floating point. O(m)."""
         return statistics_of(self.points, self.triangles, len(self.edges), int((self.neighbors < 0).sum()))
 
-    def canonical(self) -> "Triangulation":
+    def canonical(self) -> Triangulation:
         """Return the same triangulation in a numbering that depends on nothing but the points.
 
         Vertices in lexicographic order, the smallest corner of each triangle first, triangles in order. O(m log m).

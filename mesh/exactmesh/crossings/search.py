@@ -1,5 +1,7 @@
 """Pairs of segments that meet where they should not."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from dataclasses import dataclass
 
 import numpy as np

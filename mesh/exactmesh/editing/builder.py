@@ -1,5 +1,7 @@
 """A constrained Delaunay triangulation that can be edited step by step, and frozen at any time."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import operator
 from dataclasses import replace
 from itertools import islice
@@ -167,7 +169,7 @@ class TriangulationBuilder:
     @overload
     def insert_point(self, point: PointLike, /) -> Vertex: ...
 
-    def insert_point(self, x: "Coordinate | PointLike", y: "Coordinate | None" = None, /) -> Vertex:
+    def insert_point(self, x: Coordinate | PointLike, y: Coordinate | None = None, /) -> Vertex:
         """Insert a point, given by two coordinates or as a pair; return its vertex: the one that is there, if one is.
 
         A point on a segment splits the edge there into two edges of the same segments.

@@ -1,5 +1,7 @@
 """What a mesh file holds, as arrays."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from dataclasses import dataclass, replace
 from typing import Protocol
 

@@ -14,7 +14,7 @@ from exactmesh.plane import BoolArray
 
 __all__ = ["MAX_ANGLE", "Options", "Size", "Steiner", "Unsuitable", "checked_options"]
 
-#: Called with points (k, 2); returns the longest edges wanted there, (k,).
+#: Called with points (k, 2); returns the longest edges wanted there, (k,), or one number for all.
 Size: TypeAlias = Callable[[FloatArray], npt.ArrayLike]
 
 #: Called with the corners (k, 3, 2) and the areas (k,) of triangles; returns which of them to refine, (k,).
@@ -53,7 +53,7 @@ class Options(NamedTuple):
 def checked_options(
     min_angle: float,
     max_area: npt.ArrayLike | None,
-    size: Size | None,
+    size: Size | float | None,
     unsuitable: Unsuitable | None,
     conforming: bool,
     steiner: Steiner | str,
@@ -69,9 +69,8 @@ def checked_options(
     angle = _number("min_angle", min_angle)
     if not 0.0 <= angle <= MAX_ANGLE:
         raise OptionError(f"min_angle={min_angle!r} degrees; it must be from 0 (no bound) to {MAX_ANGLE:g}")
-    for name, function in (("size", size), ("unsuitable", unsuitable)):
-        if function is not None and not callable(function):
-            raise OptionError(f"{name}={function!r} is no function")
+    if unsuitable is not None and not callable(unsuitable):
+        raise OptionError(f"unsuitable={unsuitable!r} is no function")
     edge = 0.0 if min_edge is None else _number("min_edge", min_edge)
     if not 0.0 <= edge < math.inf:
         raise OptionError(f"min_edge={min_edge!r}; it must be a length")
@@ -80,7 +79,7 @@ def checked_options(
         budget = _number("max_steiner", max_steiner)
         if budget < 0.0 or budget != math.floor(budget):
             raise OptionError(f"max_steiner={max_steiner!r}; it must be a number of points")
-    return Options(angle, _areas(max_area), size, unsuitable, bool(conforming), Steiner(steiner), budget, edge)
+    return Options(angle, _areas(max_area), _size(size), unsuitable, bool(conforming), Steiner(steiner), budget, edge)
 
 
 def _number(name: str, value: object) -> float:
@@ -92,6 +91,17 @@ def _number(name: str, value: object) -> float:
         if not math.isnan(number):
             return number
     raise OptionError(f"{name}={value!r} is no number")
+
+
+def _size(size: Size | float | None) -> Size | None:
+    if size is None or callable(size):
+        return size
+    if isinstance(size, bool) or not isinstance(size, (int, float, np.integer, np.floating)):
+        raise OptionError(f"size={size!r} is neither a length nor a function")
+    length = _number("size", size)
+    if length <= 0.0:
+        raise OptionError(f"size={size!r}; it must be positive")
+    return lambda _: length
 
 
 def _areas(max_area: npt.ArrayLike | None) -> float | FloatArray:
@@ -140,14 +150,16 @@ def sizes_of(answer: npt.ArrayLike, count: int, at: FloatArray) -> FloatArray:
     """Return what ``size`` answered.
 
     Raises:
-        ShapeError: it is no array of numbers of that length.
+        ShapeError: it is neither an array of numbers of that length nor one number.
         OptionError: a size is not positive.
     """
     sizes = _array("the answer of size", answer)
+    if sizes.ndim == 0:
+        sizes = np.broadcast_to(sizes, (count,))
     if sizes.shape != (count,) or sizes.dtype.kind not in "iuf":
         raise ShapeError(
-            f"size returned {sizes.dtype} of shape {sizes.shape}; it must return one number for each of the {count}"
-            " points"
+            f"size returned {sizes.dtype} of shape {sizes.shape}; it must return one number, or one for each of the"
+            f" {count} points"
         )
     bad = np.flatnonzero(~(sizes > 0))
     if bad.size:

@@ -1,5 +1,7 @@
 """Refinement: points added to a constrained Delaunay triangulation until its triangles are as good as asked for."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import math
 
 import numpy as np
@@ -14,7 +16,7 @@ from exactmesh.constrain import Crossings, constrained_delaunay
 from exactmesh.crossings.memory import room_for
 from exactmesh.delaunay import MAX_POINTS, Progress
 from exactmesh.errors import OptionError
-from exactmesh.pslg import PSLG
+from exactmesh.pslg import PSLG, Carve
 from exactmesh.refinement.asking import Question, area_question, ask, size_question, unsuitable_question
 from exactmesh.refinement.layout import TINIEST, Layout, grown, laid_out
 from exactmesh.refinement.options import Options, Size, Steiner, Unsuitable, checked_options
@@ -160,12 +162,13 @@ def refine(
     *,
     min_angle: float = 20.0,
     max_area: npt.ArrayLike | None = None,
-    size: Size | None = None,
+    size: Size | float | None = None,
     unsuitable: Unsuitable | None = None,
     conforming: bool = False,
     steiner: Steiner | str = Steiner.ANYWHERE,
     max_steiner: int | None = None,
     min_edge: float | None = None,
+    carve: bool | Carve | str = True,
     crossings: Crossings | str = Crossings.ERROR,
     progress: Progress | None = None,
 ) -> Refinement:
@@ -180,15 +183,17 @@ def refine(
             60 degrees or more, up to 33 does nearly always.
         max_area: the largest area; or, of a triangulation, one for each of its triangles, not positive for none: it
             holds for triangles whose centroid is there.
-        size: called with centroids (k, 2), returns positive lengths (k,): no edge of a triangle is to be longer.
+        size: a positive length: no edge is to be longer; or a function, called with centroids (k, 2), that returns such
+            lengths (k,), or one for all: no edge of the triangle is to be longer.
         unsuitable: called with corners (k, 3, 2), counterclockwise, and areas (k,), returns bools (k,): which triangles
-            to refine. Both are called for many triangles at once, about each triangle once.
+            to refine. Functions are called for many triangles at once, about each triangle once.
         conforming: make every segment Gabriel (no vertex inside its diametral circle), so that all triangles are
             Delaunay and all circumcentres in the domain.
         steiner: where points may be added; see :class:`Steiner`.
         max_steiner: the largest number of points to add; None: what fits into a quarter of the machine's memory.
         min_edge: make no edge shorter than this.
-        crossings: what to do about segments that cross; see :class:`Crossings`.
+        carve: what of a graph is its domain, as for :func:`exactmesh.constrained_delaunay`; False: the convex hull.
+        crossings: what to do about segments of a graph that cross; see :class:`Crossings`.
         progress: called now and then with (vertices so far, 0).
 
     Returns:
@@ -197,7 +202,7 @@ def refine(
     Raises:
         OptionError: a number is out of range, or ``size`` returned one that is not positive.
         ShapeError: a function returned something of the wrong shape or type; ``max_area`` does not fit the triangles.
-        ChoiceError: ``steiner`` or ``crossings`` is none of the words.
+        ChoiceError: ``steiner``, ``carve`` or ``crossings`` is none of the words.
         What ``size`` and ``unsuitable`` raise; and for a graph what :func:`exactmesh.constrained_delaunay` raises.
 
     Expected O(n log n) for n vertices of the output. Reference [Ruppert 1995], [Shewchuk 2002], [Miller 2003],
@@ -213,7 +218,10 @@ def refine(
     if isinstance(domain, PSLG):
         if not isinstance(options.max_area, float):
             raise OptionError("max_area for each triangle needs a Triangulation; for a graph, give one number")
-        domain = constrained_delaunay(domain, crossings=crossings)
+        domain = constrained_delaunay(domain, carve=carve, crossings=crossings)
     elif not isinstance(domain, Triangulation):
-        raise ShapeError(f"expected a PSLG or a Triangulation, not a {type(domain).__name__}")
+        raise ShapeError(
+            f"expected a PSLG or a Triangulation, not a {type(domain).__name__}: refine(delaunay(points)) refines the"
+            " convex hull of points, refine(PSLG.from_rings(rings)) what closed rings enclose"
+        )
     return refined(domain, options, progress)

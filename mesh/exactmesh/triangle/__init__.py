@@ -10,6 +10,7 @@ and types; switches are those of Triangle. What Triangle misreads, or dies of, i
 Reference: [Shewchuk 1996]
 """
 
+from exactmesh import __version__
 from exactmesh.triangle.api import convex_hull, delaunay, triangulate, voronoi
 from exactmesh.triangle.callbacks import from_meshpy, from_triunsuitable
 from exactmesh.triangle.data import get_data, show_data
@@ -26,6 +27,7 @@ __all__ = [
     "Switches",
     "TriangleDict",
     "TriangleWarning",
+    "__version__",
     "compare",
     "comparev",
     "convex_hull",

@@ -1,5 +1,7 @@
 """The functions of the ``triangle`` package."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import warnings
 from collections.abc import Mapping
 

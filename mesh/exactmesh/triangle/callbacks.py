@@ -1,5 +1,7 @@
 """Functions that say which triangles are too large, in the conventions of others, as one for whole arrays."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Callable
 from typing import TypeAlias
 

@@ -1,5 +1,7 @@
 """Pictures of dictionaries, by matplotlib."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol, cast
 
@@ -23,11 +25,11 @@ _RAYS = ("ray_origins", "ray_directions")
 class Pyplot(Protocol):
     """What is needed of ``matplotlib.pyplot``."""
 
-    def figure(self, *, figsize: tuple[float, float]) -> "Figure":
+    def figure(self, *, figsize: tuple[float, float]) -> Figure:
         """Return a new figure."""
 
 
-def plot(ax: "Axes", **tri: object) -> None:
+def plot(ax: Axes, **tri: object) -> None:
     """Draw what is in a dictionary: vertices, triangles or edges, segments, holes, regions, attributes.
 
     ``ray_origins`` and ``ray_directions`` besides are rays from vertices, as :func:`voronoi` returns them.
@@ -62,7 +64,7 @@ def plot(ax: "Axes", **tri: object) -> None:
         _draw_rays(ax, xy[content["ray_origins"]], content["ray_directions"].astype(np.float64))
 
 
-def _draw_triangles(ax: "Axes", xy: FloatArray, content: Mapping[str, npt.NDArray[np.generic]]) -> None:
+def _draw_triangles(ax: Axes, xy: FloatArray, content: Mapping[str, npt.NDArray[np.generic]]) -> None:
     if "triangles" not in content:
         return
     triangles = cast(IntArray, content["triangles"][:, :3])
@@ -74,14 +76,14 @@ def _draw_triangles(ax: "Axes", xy: FloatArray, content: Mapping[str, npt.NDArra
             ax.text(x, y, f"{value:g}", color=_REGION, ha="center", va="center", fontsize=6)
 
 
-def _draw_lines(ax: "Axes", lines: FloatArray, color: str, width: float) -> None:
+def _draw_lines(ax: Axes, lines: FloatArray, color: str, width: float) -> None:
     from matplotlib.collections import LineCollection
 
     # matplotlib takes (k, 2, 2) arrays, though it is typed for sequences of arrays only
     ax.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]
 
 
-def _draw_seeds(ax: "Axes", content: Mapping[str, npt.NDArray[np.generic]]) -> None:
+def _draw_seeds(ax: Axes, content: Mapping[str, npt.NDArray[np.generic]]) -> None:
     if "holes" in content:
         holes = content["holes"].astype(np.float64)
         ax.scatter(holes[:, 0], holes[:, 1], marker="x", c=_HOLE, s=36)
@@ -90,7 +92,7 @@ def _draw_seeds(ax: "Axes", content: Mapping[str, npt.NDArray[np.generic]]) -> N
         ax.text(x, y, f" {label[0]:g}", color=_REGION)
 
 
-def _draw_rays(ax: "Axes", origins: FloatArray, directions: FloatArray) -> None:
+def _draw_rays(ax: Axes, origins: FloatArray, directions: FloatArray) -> None:
     """Draw rays to beyond the picture, with some room around what is in it already."""
     ax.margins(0.25)
     ax.autoscale_view()
@@ -125,7 +127,7 @@ def comparev(
     _pair(plt.figure(figsize=figsize), (2, 1), A, B)
 
 
-def _pair(figure: "Figure", grid: tuple[int, int], A: Mapping[str, object], B: Mapping[str, object]) -> None:
+def _pair(figure: Figure, grid: tuple[int, int], A: Mapping[str, object], B: Mapping[str, object]) -> None:
     first = figure.add_subplot(*grid, 1)
     plot(first, **A)
     plot(figure.add_subplot(*grid, 2, sharex=first, sharey=first), **B)

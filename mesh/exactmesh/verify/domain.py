@@ -1,5 +1,7 @@
 """What a mesh is checked against besides its points: segments, the domain, labels; validated once."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from dataclasses import dataclass
 from typing import Protocol
 

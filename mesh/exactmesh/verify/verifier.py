@@ -1,5 +1,7 @@
 """verify: what is decided first, and what rests on it."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
@@ -46,7 +48,7 @@ def verify(
     labels: npt.ArrayLike | None = None,
     min_angle: float | None = None,
     max_angle: float | None = None,
-    max_area: "float | npt.ArrayLike | None" = None,
+    max_area: float | npt.ArrayLike | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str = Orientation.CCW,
 ) -> Report:

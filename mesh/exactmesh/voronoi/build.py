@@ -1,5 +1,7 @@
 """voronoi: from points, or from a Delaunay triangulation, to the diagram."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from enum import StrEnum
 from typing import Self
 

@@ -1,5 +1,7 @@
 """Natural neighbours, and interpolation by Sibson's coordinates."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -43,7 +45,7 @@ class NaturalNeighbors:
     sites: IntArray
     weights: FloatArray
 
-    def __reduce__(self) -> "tuple[type[NaturalNeighbors], tuple[object, ...]]":
+    def __reduce__(self) -> tuple[type[NaturalNeighbors], tuple[object, ...]]:
         # copies and pickles are made anew: numpy does not pass on that an array is read-only
         return NaturalNeighbors, tuple(getattr(self, f.name) for f in fields(self))
 
@@ -79,7 +81,7 @@ def natural_neighbors(points_or_mesh: npt.ArrayLike | Triangulation, at: npt.Arr
 
     Expected O(k) after location for points among random sites. Reference [Sibson 1981].
 
-    >>> from exactmesh.voronoi import natural_neighbors
+    >>> from exactmesh import natural_neighbors
     >>> found = natural_neighbors([(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (0, 2), (0.5, 0)])
     >>> found.offsets.tolist(), found.weights.tolist()
     ([0, 4, 5, 7], [0.25, 0.25, 0.25, 0.25, 1.0, 0.75, 0.25])
@@ -207,7 +209,7 @@ def interpolate(points_or_mesh: npt.ArrayLike | Triangulation, values: npt.Array
 
     Reference [Sibson 1981].
 
-    >>> from exactmesh.voronoi import interpolate
+    >>> from exactmesh import interpolate
     >>> interpolate([(0, 0), (2, 0), (2, 2), (0, 2), (1, 1)], [0, 2, 4, 2, 2], [(0.25, 0.75), (3, 3)]).tolist()
     [1.0, nan]
     """

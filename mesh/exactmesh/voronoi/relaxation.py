@@ -1,5 +1,7 @@
 """Lloyd's relaxation: every site moves to the centroid of its cell, again and again."""
 
+from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
+
 import operator
 from dataclasses import dataclass
 
@@ -68,7 +70,7 @@ def lloyd(
 
     O(n log n) a step. Reference [Lloyd 1982], [Du 1999].
 
-    >>> from exactmesh.voronoi import lloyd
+    >>> from exactmesh import lloyd
     >>> relaxed = lloyd([(0.1, 0.5), (0.2, 0.5)], clip=(0, 0, 1, 1), iterations=50)
     >>> relaxed.points.round(6).tolist()
     [[0.25, 0.5], [0.75, 0.5]]
