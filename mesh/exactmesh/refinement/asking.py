@@ -138,6 +138,8 @@ def ask(s: Sheet, rules: Rules, questions: list[Question], exponent: int) -> boo
     halves = np.empty(2 * int(s.counts[EDGES]) // 3 + 1, dtype=np.int32)
     halves = halves[: int(collect_fresh(s, halves))]
     count = len(halves)
+    if count == 0:  # nothing for a function to stumble over
+        return False
     corners = np.empty((count, 3, 2))
     write_corners(s, halves, corners)
     corners = np.ldexp(corners, -exponent)

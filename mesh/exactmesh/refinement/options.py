@@ -49,6 +49,12 @@ class Options(NamedTuple):
     max_steiner: float
     min_edge: float
 
+    @property
+    def asks_for_points(self) -> bool:
+        """Whether any of them asks for points; regions may, too."""
+        sized = not isinstance(self.max_area, float) or self.max_area < math.inf or self.size or self.unsuitable
+        return bool(self.min_angle > 0.0 or self.conforming or sized)
+
 
 def checked_options(
     min_angle: float,

@@ -89,7 +89,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         angle=angle_bound(options.min_angle),
         has_angle=options.min_angle > 0.0,
         offset=_OFFSET / tangent if tangent > _FLAT else 0.0,
-        lens=(2.0 * cosine * cosine - 1.0) ** 2,
+        lens=(2.0 * cosine * cosine - 1.0) ** 2 if options.asks_for_points or (areas < math.inf).any() else math.inf,
         gabriel=options.conforming,
         areas=areas,
         has_area=bool((areas < math.inf).any()),

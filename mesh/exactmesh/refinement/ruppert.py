@@ -139,9 +139,10 @@ def settle(s: Sheet, nearest: float, p: int, parent: int, kind: int, root: float
 
 
 @jit_inline
-def concentric(s: Sheet, a: int, b: int, centre: int, parent: int) -> float:
+def concentric(s: Sheet, rules: Rules, a: int, b: int, centre: int, parent: int) -> float:
     """Return where the circle round the centre through the parent divides ab, or 0.0 if that is not well inside."""
-    if s.kind[parent] == _INTERIOR or s.kind[parent] < 0 or parent == centre:
+    line = s.line[parent]
+    if s.kind[parent] != 0 and (line < 0 or (rules.ends[line, 0] != centre and rules.ends[line, 1] != centre)):
         return 0.0
     xy = s.xy
     radius = math.sqrt(distance_squared(xy, centre, parent))
@@ -172,7 +173,7 @@ def parameter(s: Sheet, rules: Rules, row: int, a: int, b: int, parent: int) -> 
             continue
         slack = min(_ON_CIRCLE, 0.25 * angle * angle)
         if v not in (a, b):
-            t = concentric(s, a, b, v, parent)
+            t = concentric(s, rules, a, b, v, parent)
             if t > 0.0:
                 return t, slack
         else:
