@@ -17,6 +17,7 @@ __all__ = ["place_centre", "shortest_edge"]
 
 _ROW = 0.8660254037844386  # the height of an equilateral triangle of edge 1
 _APART = 0.55  # how far all vertices are from a point of the lattice that is taken, in its edges
+_OUTSIDE = 8.0  # in extents of the domain: nothing is that far away
 _FAR = 1e9  # in edges of the lattice: beyond, its points would be far from where they belong
 _CLEAR = 1e-6  # of the permanent: an area above that has ten digits
 
@@ -79,6 +80,9 @@ def place_centre(s: Sheet, rules: Rules, e: int, p: int, offset: float) -> None:
             (ux - mx) * (vx - mx) + (uy - my) * (vy - my) > 0.0
         ):
             ux, uy = vx, vy
+    far = math.sqrt((ux * ux + uy * uy) / rules.longest)
+    if far > _OUTSIDE:  # of a needle: nearer is outside, too, and no product overflows there
+        ux, uy = ux / far * _OUTSIDE, uy / far * _OUTSIDE
     xy[2 * p] = to_unit(ax + ux, rules.unit)
     xy[2 * p + 1] = to_unit(ay + uy, rules.unit)
 
@@ -122,9 +126,10 @@ def is_finite(xy: FloatArray, p: int) -> bool:
 
 
 @jit_inline
-def place_centroid(s: Sheet, e: int, p: int) -> None:
+def place_centroid(s: Sheet, rules: Rules, e: int, p: int) -> None:
     """Write the coordinates of the centroid of the triangle on the left of e."""
     f = left_next(s.ring, e)
     a, b, c = origin(s.org, e), origin(s.org, f), dest(s.org, f)
     for axis in range(2):
-        s.xy[2 * p + axis] = (s.xy[2 * a + axis] + s.xy[2 * b + axis] + s.xy[2 * c + axis]) / 3.0
+        third = (s.xy[2 * a + axis] + s.xy[2 * b + axis] + s.xy[2 * c + axis]) / 3.0
+        s.xy[2 * p + axis] = to_unit(third, rules.unit)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from gmpy2 import mpq
+from gmpy2 import mpfr, mpq, sqrt
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.refinement.rules import Reason, SteinerKind
@@ -82,8 +82,10 @@ class Refinement:
 
     @property
     def displacement(self) -> float:
-        """The largest distance of a Steiner point from its segment, rounded from ``displacement_squared``."""
-        return float(np.sqrt(float(self.displacement_squared)))
+        """The largest distance of a Steiner point from its segment: the square root of its square, rounded up."""
+        nearest = float(sqrt(mpfr(self.displacement_squared)))
+        enough = nearest == np.inf or mpq(nearest) * mpq(nearest) >= self.displacement_squared
+        return nearest if enough else float(np.nextafter(nearest, np.inf))
 
     def reason_of(self, triangle: int) -> Reason | None:
         """Return why a triangle was left as it is, or None where it meets what was asked for."""

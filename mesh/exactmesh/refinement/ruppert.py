@@ -26,6 +26,7 @@ from exactmesh.refinement.removal import remove_vertex
 from exactmesh.refinement.rules import Reason, Rules, SteinerKind, faults_of, is_encroached, joins_sharp_segments
 from exactmesh.refinement.sheet import (
     ANGLE,
+    ASKED,
     DEAD,
     EDGES,
     FAULTS,
@@ -43,6 +44,7 @@ from exactmesh.refinement.sheet import (
 )
 from exactmesh.refinement.split_point import split_point
 
+_THICK = 1.0 / 64.0  # the height of a triangle, in lengths of its longest edge
 _WELL = 4.0  # squared: the parts of an edge are to be twice as long as the parent is away
 _HALFWAY = 0.125  # how far from the middle, in lengths of the edge, will do
 _ON_CIRCLE = 1e-4  # how far from a common circle, in lengths of the edge, will do: each of its digits costs bits
@@ -315,6 +317,17 @@ def yield_to(s: Sheet, half: int, edge: int, parent: int, cause: int) -> None:
         await_split(s, edge, parent, cause)
 
 
+@jit_inline
+def is_thick(s: Sheet, e: int) -> bool:
+    """Tell whether the triangle on the left of e is not so flat that what is asked for cannot be had inside of it."""
+    xy, f = s.xy, left_next(s.ring, e)
+    a, b, c = origin(s.org, e), dest(s.org, e), dest(s.org, f)
+    longest = max(distance_squared(xy, a, b), max(distance_squared(xy, b, c), distance_squared(xy, c, a)))
+    bx, by = xy[2 * b] - xy[2 * a], xy[2 * b + 1] - xy[2 * a + 1]
+    cx, cy = xy[2 * c] - xy[2 * a], xy[2 * c + 1] - xy[2 * a + 1]
+    return bool(bx * cy - by * cx > _THICK * longest)
+
+
 @jit
 def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
     """Put a point where the triangle on the left of the half-edge is bad, or divide the segments that object."""
@@ -334,8 +347,8 @@ def refine_triangle(s: Sheet, rules: Rules, half: int) -> None:
     found, zeros = seek(s, e, p)
     if zeros == 1 and s.segment[found >> 2] >= 0:
         zeros = 3
-    if zeros == 3 and s.hard[found >> 2] == _FORBIDDEN and faults != ANGLE:
-        place_centroid(s, e, p)
+    if zeros == 3 and s.hard[found >> 2] == _FORBIDDEN and (faults & SIZE or (faults & ASKED and is_thick(s, e))):
+        place_centroid(s, rules, e, p)
         found, zeros = seek(s, e, p)
     if zeros == 3:
         yield_to(s, half, found, parent, _YIELDED if faults == ANGLE else _YIELDED_TO_SIZE)
