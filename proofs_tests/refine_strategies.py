@@ -125,9 +125,10 @@ def domains(draw: st.DrawFn) -> PSLG:
     exponent = draw(st.sampled_from([0, 0, 0, -40, 40, -300, 300, -600, 480]))
     if exponent == 0:
         return domain
-    scaled = np.ldexp(domain.points, exponent)
-    if not np.isfinite(scaled * 4).all() or (np.ldexp(scaled, -exponent) != domain.points).any():
-        return domain
+    with np.errstate(over="ignore", under="ignore"):
+        scaled = np.ldexp(domain.points, exponent)
+        if not np.isfinite(scaled * 4).all() or (np.ldexp(scaled, -exponent) != domain.points).any():
+            return domain
     regions = domain.regions.copy()
     regions[:, :2] = np.ldexp(regions[:, :2], exponent)
     regions[:, 3] = -1.0

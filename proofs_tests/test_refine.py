@@ -20,7 +20,7 @@ from exactmesh.errors import ChoiceError, CollinearPointsError, ExactMeshError, 
 from exactmesh.refinement import Reason, Refinement, Steiner, SteinerKind
 from exactmesh.verify import CONFORMING_TRIANGULATION, DOMAIN_TRIANGULATION, Property, Verdict, verify
 
-FEWER = settings(max_examples=max(20, settings.default.max_examples // 5)) if settings.default else settings()
+FEWER = settings(max_examples=max(20, settings().max_examples // 5))
 SQUARE = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]
 PLATE = PSLG(SQUARE, [(0, 1), (1, 2), (2, 3), (3, 0)])
 
@@ -423,6 +423,7 @@ class TestTermination:
         done = refine(domain, min_angle=degrees, conforming=conforming, max_steiner=50000)
         assert Reason.BUDGET not in done.reasons
 
+    @pytest.mark.compiled
     @pytest.mark.parametrize("degrees", [36.0, 38.0, 40.0])
     def test_angles_beyond_theory(self, degrees: float) -> None:
         """Where the angle would never be reached, what is given up says so; what is not given up holds."""
@@ -469,6 +470,9 @@ BAD_OPTIONS: list[tuple[dict[str, object], type[Exception], str]] = [
     ({"max_area": "a"}, ExactMeshError, "max_area"),
     ({"max_area": [[1.0]]}, ExactMeshError, "max_area"),
     ({"size": -3}, OptionError, "size"),
+    ({"size": 0}, OptionError, "size"),
+    ({"size": math.nan}, OptionError, "size"),
+    ({"size": "3"}, OptionError, "size"),
     ({"unsuitable": "no"}, OptionError, "unsuitable"),
     ({"steiner": "never"}, ChoiceError, "steiner"),
     ({"max_steiner": -1}, OptionError, "max_steiner"),
