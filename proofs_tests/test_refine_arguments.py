@@ -6,7 +6,19 @@ import numpy as np
 import pytest
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, OptionError, PSLGError, ShapeError, Triangulation, constrained_delaunay, delaunay, refine
+from exactmesh import (
+    PSLG,
+    ClipError,
+    OptionError,
+    PSLGError,
+    ShapeError,
+    Triangulation,
+    constrained_delaunay,
+    delaunay,
+    lloyd,
+    refine,
+    voronoi,
+)
 
 CORNERS = [(0, 0), (4, 0), (4, 3), (0, 3)]
 HOLE = [(1, 1), (2, 1), (2, 2), (1, 2)]
@@ -92,3 +104,26 @@ class TestAdvice:
     def test_the_advice_works(self) -> None:
         assert area(refine(delaunay(CORNERS)).triangulation) == 12
         assert area(refine(PSLG.from_rings([CORNERS, HOLE])).triangulation) == 11
+
+
+class TestRefinements:
+    """Law: a Refinement stands for its triangulation."""
+
+    def test_it_is_refined_further(self) -> None:
+        coarse = refine(PLATE)
+        found, expected = refine(coarse, max_area=0.25), refine(coarse.triangulation, max_area=0.25)
+        assert found.triangulation.triangles.tobytes() == expected.triangulation.triangles.tobytes()
+        assert len(found.triangulation.triangles) > len(coarse.triangulation.triangles)
+
+    def test_it_has_a_voronoi_diagram(self) -> None:
+        done = refine(PLATE, conforming=True)
+        cells = voronoi(done, clip="domain").clipped
+        assert cells is not None
+        assert sum(Fraction(int(a.numerator), int(a.denominator)) for a in map(cells.exact_area, cells.sites)) == 11
+
+    @pytest.mark.parametrize("clip", [PLATE, "domain"])
+    def test_control_what_clips_nothing_is_told(self, clip: str) -> None:
+        with pytest.raises(ClipError, match="convex polygon"):
+            lloyd(CORNERS, clip=clip)
+        with pytest.raises(ClipError, match="conforming=True"):
+            voronoi(CORNERS, clip=PLATE)  # type: ignore[arg-type]  # what an untyped caller passes

@@ -7,6 +7,7 @@ comments; nothing of that is run here.
 import math
 import warnings
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,13 +20,15 @@ from exactmesh import (
     CollinearPointsError,
     ExactMeshError,
     FaultKind,
+    FileFormatError,
     InadmissibleError,
     NonFiniteError,
     PSLGError,
+    ShapeError,
     TooFewPointsError,
     verify,
 )
-from exactmesh.triangle import SwitchError, TriangleDict, TriangleWarning, triangulate
+from exactmesh.triangle import SwitchError, TriangleDict, TriangleWarning, get_data, load, triangulate
 
 CLAIMS = ("orientation", "admissible", "segments_present")
 
@@ -224,6 +227,32 @@ class TestErrors:
         """It does not end, or runs out of memory."""
         with pytest.raises(SwitchError, match="40 at most"):
             triangulate(COURSE, "pq60")
+
+    @pytest.mark.parametrize("given", [SQUARE["vertices"], np.zeros((5, 2)), None, "A"])
+    def test_no_dictionary(self, given: Mapping[str, object]) -> None:
+        with pytest.raises(ShapeError, match=r"takes a dictionary, not a .*: {'vertices': points}"):
+            triangulate(given, "q")
+
+    def test_no_string_of_switches(self) -> None:
+        with pytest.raises(SwitchError, match="switches are a string"):
+            triangulate(SQUARE, 20)  # type: ignore[arg-type]  # what an untyped caller passes
+        none, empty = triangulate(SQUARE, None), triangulate(SQUARE, "")
+        assert none["triangles"].tolist() == empty["triangles"].tolist()
+
+    @pytest.mark.parametrize("name", ["box.1", "double_hex3.1", "spiral.q"])
+    def test_examples_that_are_results(self, name: str) -> None:
+        with pytest.raises(ChoiceError, match=rf"result.*triangulate\(get_data\('{name.split('.')[0]}'\)"):
+            get_data(name)
+        with pytest.raises(ChoiceError, match="there is no example"):
+            get_data("nothing.1")
+
+    def test_a_name_with_its_suffix(self, tmp_path: Path) -> None:
+        (tmp_path / "a.node").write_text("3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n")
+        assert len(load(tmp_path, "a")["vertices"]) == 3
+        with pytest.raises(FileFormatError, match="without suffix, 'a'"):
+            load(tmp_path, "a.node")
+        with pytest.raises(FileFormatError, match=r"neigh$"):
+            load(tmp_path, "b")
 
     def test_nobody_to_ask(self) -> None:
         """The package has a function of its own, which nobody chose."""

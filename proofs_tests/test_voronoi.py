@@ -368,6 +368,23 @@ class TestScipysNames:
             theirs_region = theirs.regions[theirs.point_region[i]]
             assert sorted(place[theirs_region].tolist()) == sorted(ours.regions[ours.point_region[i]])
 
+    def test_it_can_be_drawn_by_scipy(self) -> None:
+        """Also the names that only drawing needs; bounds are those of all sites, and the ridges are found by both."""
+        spatial, figures = pytest.importorskip("scipy.spatial"), pytest.importorskip("matplotlib.figure")
+        points = np.random.default_rng(7).random((20, 2))
+        theirs, ours = spatial.Voronoi(points), voronoi(points)
+        for name in ("ndim", "npoints", "furthest_site"):
+            assert getattr(theirs, name) == getattr(ours, name)
+        assert np.array_equal(theirs.min_bound, ours.min_bound)
+        assert np.array_equal(theirs.max_bound, ours.max_bound)
+        assert {frozenset(pair) for pair in theirs.ridge_dict} == {frozenset(pair) for pair in ours.ridge_dict}
+        pictures = [figures.Figure().add_subplot() for _ in range(2)]
+        drawn = []
+        for diagram, axes in zip((theirs, ours), pictures, strict=True):
+            spatial.voronoi_plot_2d(diagram, ax=axes)
+            drawn.append([len(lines.get_segments()) for lines in axes.collections])
+        assert drawn[0] == drawn[1]
+
 
 class TestSource:
     """A triangulation is taken as it is if it is Delaunay, and refused by name if not."""

@@ -13,6 +13,7 @@ from exactmesh.verify import (
     DOMAIN_TRIANGULATION,
     Property,
     Report,
+    Verdict,
     verify,
 )
 
@@ -94,8 +95,8 @@ def checked_alone(
 ) -> tuple[Report, str]:
     """Verify the mesh against its own segments and holes, or else against the hull; return a line that says which.
 
-    The hull it is where there are no segments, where they describe no domain, and where the mesh is one of the hull and
-    none of that domain: what is written with ``--carve none``.
+    The hull it is where there are no segments, where they describe no domain, and where the triangles do not cover that
+    domain: what is written with ``--carve none`` covers the hull. What else is wrong is told of the domain.
     """
     if mesh.segments is None or not len(mesh.segments):
         return _checked_hull(mesh, claims, orientation, shapes), ""
@@ -106,7 +107,7 @@ def checked_alone(
     except PSLGError as error:
         why = f"for {PSLGError(error.faults, path=place, base=mesh.base)}"
     else:
-        if report.ok or claims is not None:
+        if claims is not None or report.verdict(Property.COVERS_DOMAIN) is not Verdict.FAILS:
             return report, f"(Checked against the domain of the segments and holes in {place}; {_REMEDY}.)"
         why = f"for it is no triangulation of the domain of the segments and holes in {place}"
     return _checked_hull(mesh, claims, orientation, shapes), f"(Checked against the hull, {why}; {_REMEDY}.)"

@@ -158,7 +158,7 @@ def refined(mesh: Triangulation, options: Options, progress: Progress | None) ->
 
 
 def refine(
-    domain: PSLG | Triangulation,
+    domain: PSLG | Triangulation | Refinement,
     *,
     min_angle: float = 20.0,
     max_area: npt.ArrayLike | None = None,
@@ -178,7 +178,8 @@ def refine(
     ``reasons`` name the triangles that do not meet a bound. Whether a bound holds is decided exactly.
 
     Args:
-        domain: a graph, or a triangulation, which is refined further; the regions of the graph bound areas, too.
+        domain: a graph, or a triangulation (or what ``refine`` returned), which is refined further; the regions of the
+            graph bound areas, too.
         min_angle: the least angle, degrees, 0 (no bound) to 40. Up to 20.7 is proved to succeed where segments meet at
             60 degrees or more, up to 33 does nearly always.
         max_area: the largest area; or, of a triangulation, one for each of its triangles, not positive for none: it
@@ -215,6 +216,8 @@ def refine(
     True
     """
     options = checked_options(min_angle, max_area, size, unsuitable, conforming, steiner, max_steiner, min_edge)
+    if isinstance(domain, Refinement):
+        domain = domain.triangulation
     if isinstance(domain, PSLG):
         if not isinstance(options.max_area, float):
             raise OptionError("max_area for each triangle needs a Triangulation; for a graph, give one number")

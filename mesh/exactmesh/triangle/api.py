@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.delaunay import Progress
 from exactmesh.delaunay import delaunay as delaunay_mesh
@@ -24,7 +25,7 @@ __all__ = ["convex_hull", "delaunay", "triangulate", "voronoi"]
 
 def triangulate(
     tri: Mapping[str, object],
-    opts: str = "",
+    opts: str | None = "",
     *,
     unsuitable: Unsuitable | None = None,
     progress: Progress | None = None,
@@ -33,7 +34,7 @@ def triangulate(
 
     Args:
         tri: arrays by the keys of :class:`TriangleDict`; ``vertices`` (n, 2) must be there.
-        opts: the switches, such as ``"pq30a0.1"``.
+        opts: the switches, such as ``"pq30a0.1"``; None is as good as "".
         unsuitable: for ``u``: which triangles are too large, a function of corners (k, 3, 2) and areas (k,) that
             returns bool (k,); :func:`from_triunsuitable` and :func:`from_meshpy` make one of other conventions.
         progress: called now and then with how much is done, and of how much.
@@ -46,9 +47,10 @@ def triangulate(
             misses what was asked for.
 
     Raises:
-        SwitchError: the switches cannot be meant.
+        SwitchError: the switches cannot be meant, or are no string.
         ChoiceError: a key that there is not; no ``vertices``, or no ``triangles`` for ``r``.
-        ShapeError, NonFiniteError, CoordinateError: what is under a key is none; the message has the key.
+        ShapeError, NonFiniteError, CoordinateError: what is under a key is none; the message has the key. ``tri`` is no
+            dictionary.
         PSLGError: the graph has faults, all of them in ``faults``: an outline is open, an end does not exist.
         InadmissibleError: what is to be refined is no triangulation; ``report`` has the verifier's witnesses.
         TooFewPointsError, CollinearPointsError: there is no triangle.
@@ -62,7 +64,9 @@ def triangulate(
     (['edge_markers', 'edges', 'segment_markers', 'segments', 'triangles', 'vertex_markers', 'vertices'], (5, 2), \
 [1, 1, 1, 1])
     """
-    switches = parse(opts)
+    if not isinstance(tri, Mapping):
+        raise ShapeError(f"triangulate takes a dictionary, not a {type(tri).__name__}: {{'vertices': points}}")
+    switches = parse(opts or "")
     given = given_of(tri, refines=switches.asks(Switch.REFINE))
     solution = answered(given, switches, unsuitable, progress)
     only_files = (f"{s}: {MEANINGS[s]}" for s in (Switch.VORONOI, Switch.GEOMVIEW) if switches.asks(s))

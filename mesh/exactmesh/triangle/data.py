@@ -31,6 +31,10 @@ def get_data(name: str) -> TriangleDict:
     """
     if name.split(".")[0] in _NOT_FREE:
         raise ChoiceError(f"{name!r} is data of the triangle package, which is not free; load() reads your copy of it")
+    stem, _, result = name.partition(".")
+    if result and stem in _MAKERS:
+        made_by = f"triangulate(get_data({stem!r}), ...) makes such a one"
+        raise ChoiceError(f"{name!r} is a result that the triangle package keeps as a file; {made_by}")
     if name not in _MAKERS:
         raise ChoiceError(f"there is no example {name!r}; there are {', '.join(sorted(_MAKERS))}")
     made = _MAKERS[name]()

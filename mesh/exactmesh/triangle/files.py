@@ -43,7 +43,9 @@ def load(directory: "str | os.PathLike[str]", name: str) -> TriangleDict:
     stem = os.path.join(os.fspath(directory), name)
     files = {kind: TextFile.load(f"{stem}.{kind}") for kind in _KINDS if os.path.exists(f"{stem}.{kind}")}
     if not files:
-        raise FileFormatError(f"no such file, nor another of {', '.join(_KINDS)}", path=f"{stem}.node")
+        base, _, kind = name.rpartition(".")
+        remedy = f": give the name without suffix, {base!r}" if base and kind in _KINDS else ""
+        raise FileFormatError(f"no such file, nor another of {', '.join(_KINDS)}{remedy}", path=f"{stem}.node")
     return _dictionary(files)
 
 

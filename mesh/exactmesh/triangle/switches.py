@@ -179,12 +179,15 @@ def parse(switches: str) -> Switches:
     switches are allowed.
 
     Raises:
-        SwitchError: an unknown switch, a number that is not one or belongs to none, or two that contradict.
+        SwitchError: an unknown switch, a number that is not one or belongs to none, or two that contradict; no string.
 
     >>> parse("pa1e-3")
     Traceback (most recent call last):
     exactmesh.triangle.errors.SwitchError: 'a1e-3' at 1 of 'pa1e-3': numbers have no exponents: write a0.001
     """
+    if not isinstance(switches, str):
+        given = str(switches)
+        raise SwitchError("switches are a string, such as 'pq30'", switches=given, position=0, culprit=given)
     reader = _Reader(switches)
     reader.read()
     result = reader.result()

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from exactkernel.types import FloatArray
 from exactmesh.errors import ChoiceError
+from exactmesh.refinement.result import Refinement
 from exactmesh.triangulation import Triangulation
 from exactmesh.voronoi.cells import Cells
 from exactmesh.voronoi.centres import centres_of, turned
@@ -38,7 +39,9 @@ class Clip(StrEnum):
         raise ChoiceError(f'{value!r} is no clip; choose "domain", a box (xmin, ymin, xmax, ymax) or a convex polygon')
 
 
-def voronoi(points_or_mesh: npt.ArrayLike | Triangulation, *, clip: npt.ArrayLike | Clip | None = None) -> Voronoi:
+def voronoi(
+    points_or_mesh: npt.ArrayLike | Triangulation | Refinement, *, clip: npt.ArrayLike | Clip | None = None
+) -> Voronoi:
     """Return the Voronoi diagram of points, or that of the vertices of a Delaunay triangulation, which is its dual.
 
     Circumcentres of cocircular points, which is decided exactly, are one vertex, and vertices are rounded once, to the
@@ -46,7 +49,8 @@ def voronoi(points_or_mesh: npt.ArrayLike | Triangulation, *, clip: npt.ArrayLik
     same position share a cell.
 
     Args:
-        points_or_mesh: (n, 2) finite coordinates, or a :class:`Triangulation` of which every edge is locally Delaunay.
+        points_or_mesh: (n, 2) finite coordinates, or a :class:`Triangulation` of which every edge is locally Delaunay;
+            or a :class:`Refinement` of one.
         clip: a box (xmin, ymin, xmax, ymax) or a convex polygon (k, 2), of either orientation: ``clipped`` becomes the
             cells inside of it. Which cells its boundary meets, and which ridges, is decided exactly.
             ``"domain"`` or ``Clip.DOMAIN``: the domain of a boundary conforming triangulation. There a cell is what is
@@ -75,6 +79,8 @@ def voronoi(points_or_mesh: npt.ArrayLike | Triangulation, *, clip: npt.ArrayLik
         Clip(clip)
     elif clip is not None:
         window = window_of(clip)
+    if isinstance(points_or_mesh, Refinement):
+        points_or_mesh = points_or_mesh.triangulation
     source = source_of(points_or_mesh)
     if isinstance(points_or_mesh, Triangulation):
         check_mesh(points_or_mesh, to_domain=to_domain)

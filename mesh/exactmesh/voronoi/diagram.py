@@ -115,6 +115,38 @@ class Voronoi:
         with _without_collection():
             return [flat[i:j] for i, j in pairwise(bounds)]
 
+    @property
+    def furthest_site(self) -> bool:
+        """False: cells are of nearest sites. With the next five, what scipy's users and plotting functions ask for."""
+        return False
+
+    @property
+    def ndim(self) -> int:
+        """2."""
+        return 2
+
+    @property
+    def npoints(self) -> int:
+        """The number of sites."""
+        return len(self.points)
+
+    @property
+    def min_bound(self) -> FloatArray:
+        """The least coordinates of the sites, float64 (2,)."""
+        low: FloatArray = self.points.min(axis=0)
+        return low
+
+    @property
+    def max_bound(self) -> FloatArray:
+        """The largest coordinates of the sites, float64 (2,)."""
+        high: FloatArray = self.points.max(axis=0)
+        return high
+
+    @cached_property
+    def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
+        """The two vertices of the ridge between two sites, as in ``ridge_vertices``, by ``ridge_points``."""
+        return dict(zip(map(tuple, self.ridge_points.tolist()), self.ridge_vertices, strict=True))
+
     @cached_property
     def areas(self) -> FloatArray:
         """The area of each cell, float64 (n,), infinite where it is unbounded; from the rounded vertices. O(n)."""

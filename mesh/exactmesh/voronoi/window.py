@@ -7,6 +7,7 @@ from exactkernel.arrays import finite_points
 from exactkernel.batch import orient2d_batch
 from exactkernel.types import FloatArray
 from exactmesh.errors import ClipError
+from exactmesh.pslg import PSLG
 
 __all__ = ["window_of"]
 
@@ -20,6 +21,13 @@ def window_of(clip: npt.ArrayLike) -> FloatArray:
         ClipError: neither of the two, or without area; ``indices`` names a corner.
         NonFiniteError, CoordinateError, ShapeError: coordinates that are none.
     """
+    if isinstance(clip, PSLG):
+        raise ClipError(
+            "clip is a PSLG, no convex polygon; the diagram of a mesh of its domain is clipped to that by "
+            'voronoi(refine(graph, conforming=True), clip="domain")'
+        )
+    if isinstance(clip, str):
+        raise ClipError(f"clip={clip!r} is neither a box (xmin, ymin, xmax, ymax) nor a convex polygon (k, 2)")
     try:
         shape = np.shape(clip)
     except ValueError:
