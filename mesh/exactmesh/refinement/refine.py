@@ -19,7 +19,7 @@ from exactmesh.errors import OptionError
 from exactmesh.pslg import PSLG, Carve
 from exactmesh.refinement.asking import Question, area_question, ask, size_question, unsuitable_question
 from exactmesh.refinement.layout import TINIEST, Layout, grown, laid_out
-from exactmesh.refinement.options import Options, Size, Steiner, Unsuitable, checked_options
+from exactmesh.refinement.options import MAX_ANGLE, Options, Size, Steiner, Unsuitable, checked_options
 from exactmesh.refinement.outcome import refinement_of
 from exactmesh.refinement.result import Refinement
 from exactmesh.refinement.rules import Reason, Rules
@@ -34,7 +34,10 @@ _BYTES_PER_VERTEX = 400  # three edges, and what is made of them in the end
 _OFFSET = 0.465  # of the exact off-centre's 0.5: its triangle is better than asked for, which takes fewer points
 _FILLED = 0.995  # of the largest area: the triangles of a lattice
 _FLAT = 1e-6  # below, an off-centre would be farther away than any circumcentre
-_SHRINK = 1.0 / 64.0  # how short edges may become, in radii of what caused them, before an angle is given up
+
+#: How short edges may become for the sake of an angle up to so many degrees, in radii of what caused them. Up to 30 a
+#: circumcentre is no nearer than its parent is; beyond 34 all is lost soon, and is not to be lost in a million points.
+_SHRINKS = ((30.0, 1.0 / 64.0), (34.0, 1.0 / 16.0), (MAX_ANGLE, 1.0 / 4.0))
 
 
 def _zones(mesh: Triangulation) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
@@ -97,7 +100,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
         origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
         min_edge=_squared(options.min_edge, layout.exponent),
-        shrink=_SHRINK * _SHRINK,
+        shrink=next(shrink * shrink for degrees, shrink in _SHRINKS if options.min_angle <= degrees),
         unit=layout.unit,
         longest=extent * extent,
         ends=layout.lines,
