@@ -209,8 +209,8 @@ def refine(
         ChoiceError: ``steiner``, ``carve`` or ``crossings`` is none of the words.
         ExactMeshError: for a graph, as :func:`exactmesh.constrained_delaunay` does.
 
-    What ``size`` and ``unsuitable`` raise comes through. Expected O(n log n) for n vertices of the output. Reference [Ruppert 1995], [Shewchuk 2002], [Miller 2003],
-    [Ungor 2004].
+    What ``size`` and ``unsuitable`` raise comes through. Expected O(n log n) for n vertices of the output. Reference
+    [Ruppert 1995], [Shewchuk 2002], [Miller 2003], [Ungor 2004].
 
     >>> from exactmesh import PSLG, refine
     >>> lake = PSLG.from_rings([[(0, 0), (9, 0), (9, 6), (0, 6)], [(4, 2), (4, 3), (5, 3), (5, 2)]])
