@@ -1,6 +1,7 @@
 """What refine takes besides the plainest: other domains of a graph, lengths as numbers; what it tells the rest."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from exactmesh import (
     refine,
     voronoi,
 )
+from exactmesh.io import write
 
 CORNERS = [(0, 0), (4, 0), (4, 3), (0, 3)]
 HOLE = [(1, 1), (2, 1), (2, 2), (1, 2)]
@@ -120,6 +122,13 @@ class TestRefinements:
         cells = voronoi(done, clip="domain").clipped
         assert cells is not None
         assert sum(Fraction(int(a.numerator), int(a.denominator)) for a in map(cells.exact_area, cells.sites)) == 11
+
+    def test_it_can_be_written(self, tmp_path: Path) -> None:
+        done = refine(PLATE)
+        names = [write(tmp_path / name, given) for name, given in (("a.node", done), ("b.node", done.triangulation))]
+        assert len(names[0]) == len(names[1]) > 2
+        for ours, expected in zip(*names, strict=True):
+            assert Path(ours).read_bytes() == Path(expected).read_bytes().replace(b"b.", b"a.")
 
     @pytest.mark.parametrize("clip", [PLATE, "domain"])
     def test_control_what_clips_nothing_is_told(self, clip: str) -> None:
