@@ -207,7 +207,7 @@ def refine(
         OptionError: a number is out of range, or ``size`` returned one that is not positive.
         ShapeError: a function returned something of the wrong shape or type; ``max_area`` does not fit the triangles.
         ChoiceError: ``steiner``, ``carve`` or ``crossings`` is none of the words.
-        Exception: what ``size`` and ``unsuitable`` raise; for a graph, what :func:`exactmesh.constrained_delaunay`.
+        Exception: what the functions raise; and, for a graph, what :func:`exactmesh.constrained_delaunay` raises.
 
     Expected O(n log n) for n vertices of the output. Reference [Ruppert 1995], [Shewchuk 2002], [Miller 2003],
     [Ungor 2004].
