@@ -64,9 +64,7 @@ class TestCarve:
             refine(graph)
 
 
-@pytest.mark.obligation(
-    "R2", "a number as size, or from a size function, is that length everywhere"
-)
+@pytest.mark.obligation("R2", "a number as size, or from a size function, is that length everywhere")
 class TestSize:
     """Law: a length as ``size``, and a function that returns one number, mean that length everywhere."""
 
