@@ -217,6 +217,13 @@ class TestTriangulateGraphs:
         told = complaint(capsys, "triangulate", "bad.poly")
         assert "segment 7 begins and ends in point 7" in told
 
+    def test_switches_as_for_triangle(self, capsys: pytest.CaptureFixture[str]) -> None:
+        write_pslg("lake.poly", LAKE)
+        told = complaint(capsys, "triangulate", "lake.poly", "-pq30a0.1")
+        assert "Triangle's switches go behind -s: -s pq30a0.1" in told
+        assert "Triangle's switches" not in complaint(capsys, "triangulate", "lake.poly", "--what")
+        assert "Triangle's switches" not in complaint(capsys, "verify", "lake.poly", "-pq30")
+
     def test_remedies_are_those_of_the_command(self, capsys: pytest.CaptureFixture[str]) -> None:
         write_pslg("open.poly", PSLG(SQUARE, [(0, 1), (1, 2), (2, 3)]), base=1)
         told = complaint(capsys, "triangulate", "open.poly")
@@ -258,6 +265,11 @@ class TestVerifyDomains:
             assert main(["verify", "lake.1.ele", *where, "--gabriel"]) == (0 if expected else 1)
             assert "gabriel" in capsys.readouterr().out
         assert "between 0 and 180" in complaint(capsys, "verify", "lake.1.ele", "--min-angle", "200")
+        for claim in ("min-angle", "max_area"):
+            option = f"--{claim.replace('_', '-')}"
+            assert f"needs a bound, by {option}" in complaint(capsys, "verify", "lake.1.ele", "--claim", claim)
+            assert main(["verify", "lake.1.ele", "--claim", claim, option, "1e-9"]) in (0, 1)
+            capsys.readouterr()
 
     def test_control_another_mesh_is_no_triangulation_of_the_domain(self) -> None:
         mesh = read("lake.1.ele")

@@ -1,6 +1,7 @@
 """What refine takes besides the plainest: other domains of a graph, lengths as numbers; what it tells the rest."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from exactmesh import (
     refine,
     voronoi,
 )
+from exactmesh.io import write
 
 CORNERS = [(0, 0), (4, 0), (4, 3), (0, 3)]
 HOLE = [(1, 1), (2, 1), (2, 2), (1, 2)]
@@ -40,6 +42,7 @@ def longest_edge_squared(mesh: Triangulation) -> Fraction:
     return max((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 for a, b in ends)
 
 
+@pytest.mark.obligation("R2", "the domain of a graph is what carve says, refined or not")
 class TestCarve:
     """Law: refine(graph, carve=c) refines what constrained_delaunay(graph, carve=c) triangulates."""
 
@@ -61,6 +64,7 @@ class TestCarve:
             refine(graph)
 
 
+@pytest.mark.obligation("R2", "a number as size, or from a size function, is that length everywhere")
 class TestSize:
     """Law: a length as ``size``, and a function that returns one number, mean that length everywhere."""
 
@@ -120,6 +124,13 @@ class TestRefinements:
         cells = voronoi(done, clip="domain").clipped
         assert cells is not None
         assert sum(Fraction(int(a.numerator), int(a.denominator)) for a in map(cells.exact_area, cells.sites)) == 11
+
+    def test_it_can_be_written(self, tmp_path: Path) -> None:
+        done = refine(PLATE)
+        names = [write(tmp_path / name, given) for name, given in (("a.node", done), ("b.node", done.triangulation))]
+        assert len(names[0]) == len(names[1]) > 2
+        for ours, expected in zip(*names, strict=True):
+            assert Path(ours).read_bytes() == Path(expected).read_bytes().replace(b"b.", b"a.")
 
     @pytest.mark.parametrize("clip", [PLATE, "domain"])
     def test_control_what_clips_nothing_is_told(self, clip: str) -> None:

@@ -171,6 +171,9 @@ class TestPictures:
         from matplotlib import pyplot as plt
 
         box = get_data("box")
+        far = {"vertices": [(0.5, -1e6)], "ray_origins": [0], "ray_directions": [(0.0, 1.0)]}
+        comparev(plt, get_data("dots"), far)
+        assert all(-1.0 < end < 2.0 for axes in plt.gcf().axes for end in axes.axis())  # the input fills the picture
         for function, wide in ((compare, True), (comparev, False)):
             function(plt, box, triangulate(box, "pq"))
             first, second = plt.gcf().axes

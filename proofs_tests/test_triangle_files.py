@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactmesh import FileFormatError, NonFiniteError, ShapeError, cli, delaunay
+from exactmesh import FileFormatError, NonFiniteError, ShapeError, cli, delaunay, voronoi
 from exactmesh.io import Mesh, read, read_areas, read_pslg, write, write_areas, write_voronoi
 from exactmesh.triangle import TriangleDict, get_data, load, loads, triangulate
 
@@ -101,6 +101,9 @@ class TestVoronoiFiles:
     def test_duality(self, base: int) -> None:
         mesh = delaunay([(0, 0), (4, 0), (1, 3), (5, 4), (2.5, 1), (0.3, 3.7)])
         assert write_voronoi("x.v.edge", mesh, base=base) == ("x.v.node", "x.v.edge")
+        assert write_voronoi("y.v.edge", voronoi(mesh), base=base) == ("y.v.node", "y.v.edge")
+        for kind in ("node", "edge"):
+            assert Path(f"x.v.{kind}").read_bytes() == Path(f"y.v.{kind}").read_bytes()
         header, centres = table("x.v.node")
         assert header == [str(len(mesh.triangles)), "2", "0", "0"]
         exact = [circumcentre(mesh.points, corners) for corners in mesh.triangles.tolist()]
@@ -123,6 +126,8 @@ class TestVoronoiFiles:
         flat = delaunay([(0, 0), (1e300, 0), (2e300, 1e-300)])
         with pytest.raises(NonFiniteError, match="triangle 0"):
             write_voronoi("x.v.node", flat)
+        with pytest.raises(FileFormatError, match="on one line"):
+            write_voronoi("x.v.node", voronoi([(0, 0), (1, 0)]))
         assert not Path("x.v.node").exists()
         with pytest.raises(FileFormatError, match=r"\.v\.node"):
             write_voronoi("x.node", flat)

@@ -4,6 +4,7 @@ Imports stand where they are needed, so that ``--help`` and a wrong path answer 
 """
 
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, BinaryIO
@@ -89,6 +90,9 @@ def verify(
     require_file(mesh)
     if domain is None and carve is not None:
         raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
+    for name, bound in (("min-angle", min_angle), ("max-angle", max_angle), ("max-area", max_area)):
+        if bound is None and name in [word.replace("_", "-") for word in claim or ()]:
+            raise typer.BadParameter(f"{name} needs a bound, by --{name}", param_hint="--claim")
     from exactkernel.jit import is_cache_warm
     from exactmesh.progress import working
     from exactmesh.verify.boundary import walk_convex
@@ -212,7 +216,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit:  # what typer makes of a closed pipe; its code 1 would say "a violation"
         return _READER_GONE
     except _UsageError as error:
-        return _complain(f"{error.format_message()} (see exactmesh --help)")
+        return _complain(f"{error.format_message()} ({_advice(arguments)}see exactmesh --help)")
     except OSError as error:
         place = "" if error.filename is None else f"{error.filename}: "
         return _complain(f"{place}{error.strerror or error}")
@@ -227,6 +231,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if code == _INTERRUPTED:
         return _complain("interrupted", _INTERRUPTED)
     return code if isinstance(code, int) else 0
+
+
+def _advice(arguments: Sequence[str] | None) -> str:
+    """Return what to do about switches that are given as to Triangle's command, ``triangulate -pq30 lake.poly``."""
+    command, *given = [*(sys.argv[1:] if arguments is None else arguments), ""]
+    switches = [word[1:] for word in given if re.match(r"-[pr]", word)]
+    return f"Triangle's switches go behind -s: -s {switches[0]}; " if command == "triangulate" and switches else ""
 
 
 def _complain(message: str, code: int = _BAD_INPUT) -> int:

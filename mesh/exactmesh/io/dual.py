@@ -14,6 +14,7 @@ from exactmesh.io.text import rows_of_text
 
 if TYPE_CHECKING:
     from exactmesh.triangulation import Triangulation
+    from exactmesh.voronoi import Voronoi
 
 __all__ = ["v_edge_text", "v_node_text", "voronoi_writers", "write_voronoi"]
 
@@ -64,18 +65,18 @@ def voronoi_writers(stem: str, mesh: "Triangulation", base: int) -> dict[str, Wr
     }
 
 
-def write_voronoi(path: "str | os.PathLike[str]", mesh: "Triangulation", *, base: int = 0) -> tuple[str, ...]:
+def write_voronoi(path: "str | os.PathLike[str]", mesh: "Triangulation | Voronoi", *, base: int = 0) -> tuple[str, ...]:
     """Write the Voronoi diagram of a Delaunay triangulation as Triangle does; return the paths written.
 
     Row j of ``.v.node`` is the circumcentre of triangle j; row i of ``.v.edge`` is dual to ``mesh.edges[i]``.
 
     Args:
         path: ``x.v.node`` or ``x.v.edge``: both are written.
-        mesh: the triangulation.
+        mesh: the triangulation, or the diagram that :func:`exactmesh.voronoi` made of it.
         base: 0 or 1, what the files count from.
 
     Raises:
-        FileFormatError: another suffix.
+        FileFormatError: another suffix; sites on one line, which have no triangulation.
         NonFiniteError: a circumcentre is beyond the largest double.
         OSError: the folder is missing, the disk full, and so on.
 
@@ -90,10 +91,15 @@ def write_voronoi(path: "str | os.PathLike[str]", mesh: "Triangulation", *, base
     2 0 -1 0.0 -2.0
     >>> folder.cleanup()
     """
+    from exactmesh.voronoi import Voronoi
+
     name = os.fspath(path)
     stem = next((name[: -len(suffix)] for suffix in (".v.node", ".v.edge") if name.endswith(suffix)), None)
     if stem is None:
         raise FileFormatError("a Voronoi diagram goes into .v.node and .v.edge", path=name)
-    writers = voronoi_writers(stem, mesh, base)
+    triangulation = mesh.triangulation if isinstance(mesh, Voronoi) else mesh
+    if triangulation is None:
+        raise FileFormatError("the sites lie on one line: there is no circumcentre to write", path=name)
+    writers = voronoi_writers(stem, triangulation, base)
     write_whole(writers)
     return tuple(writers)

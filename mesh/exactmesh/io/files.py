@@ -1,9 +1,11 @@
 """Reading and writing by suffix; Triangle's files are found beside each other."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from exactmesh.errors import ExactMeshError, FileFormatError, PSLGError
 from exactmesh.io.atomic import Writer, text_writer, write_whole
@@ -17,6 +19,9 @@ from exactmesh.io.npz import read_npz, write_npz
 from exactmesh.io.poly import has_points, mesh_of_pslg, poly_text, pslg_of, read_poly, read_segments, segments_text
 from exactmesh.io.text import read_bytes
 from exactmesh.pslg import PSLG
+
+if TYPE_CHECKING:
+    from exactmesh.refinement.result import Refinement
 
 __all__ = [
     "PathLike",
@@ -206,7 +211,7 @@ def write_pslg(path: PathLike, pslg: PSLG, *, base: int = 0) -> tuple[str, ...]:
     return tuple(writers)
 
 
-def write(path: PathLike, mesh: Mesh | Triangulated) -> tuple[str, ...]:
+def write(path: PathLike, mesh: Mesh | Triangulated | Refinement) -> tuple[str, ...]:
     """Write a mesh so that :func:`read` returns it bit for bit, and return the paths that were written.
 
     A suffix of Triangle's writes ``.node`` and those of ``.ele``, ``.poly``, ``.neigh`` and ``.edge`` for which there

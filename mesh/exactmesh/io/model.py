@@ -3,7 +3,7 @@
 from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,9 @@ from exactkernel.arrays import finite_points
 from exactkernel.errors import NonFiniteError, ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.columns import MarkerArray, attributes_of, frozen, indices_of, markers_of, regions_of, rows_for
+
+if TYPE_CHECKING:
+    from exactmesh.refinement.result import Refinement
 
 __all__ = ["MarkerArray", "Mesh", "Triangulated", "mesh_of"]
 
@@ -36,7 +39,7 @@ class Triangulated(Protocol):
         """(k, 2)."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
     """The content of a mesh file: read-only arrays, indices from 0 whatever the file counts from.
 
@@ -63,7 +66,10 @@ class Mesh:
         NonFiniteError: NaN or infinity.
         TopologyError: an index that names no point (no triangle); ``indices`` are the rows.
 
-    >>> Mesh([(0, 0), (1, 0), (0, 1)], triangles=[(0, 1, 2)]).triangles
+    >>> mesh = Mesh([(0, 0), (1, 0), (0, 1)], triangles=[(0, 1, 2)])
+    >>> mesh
+    Mesh(3 points, 1 triangles)
+    >>> mesh.triangles
     array([[0, 1, 2]], dtype=int32)
     """
 
@@ -129,6 +135,11 @@ class Mesh:
             object.__setattr__(self, name, None if array is None else frozen(array))
         object.__setattr__(self, "base", int(base))
 
+    def __repr__(self) -> str:
+        parts = {"triangles": self.triangles, "edges": self.edges, "segments": self.segments}
+        counts = [f"{len(self.points)} points", *(f"{len(p)} {name}" for name, p in parts.items() if p is not None)]
+        return f"Mesh({', '.join(counts)})"
+
 
 def _seeds(
     holes: npt.ArrayLike | None, regions: npt.ArrayLike | None, segments: int | None
@@ -143,15 +154,18 @@ def _seeds(
     return hole_seeds if len(hole_seeds) else None, region_seeds if len(region_seeds) else None
 
 
-def mesh_of(mesh: Mesh | Triangulated) -> Mesh:
-    """Return a mesh as it is, a triangulation as the mesh of what it consists of.
+def mesh_of(mesh: Mesh | Triangulated | Refinement) -> Mesh:
+    """Return a mesh as it is, a triangulation (of a refinement, too) as the mesh of what it consists of.
 
     That is points, triangles, neighbours and edges; of a PSLG also its segments, markers, attributes, and seeds.
     """
     if isinstance(mesh, Mesh):
         return mesh
-    from exactmesh.triangulation import Triangulation  # which compiled code stands behind, that most files do not need
+    from exactmesh.refinement.result import Refinement  # compiled code stands behind these: most files do not need it
+    from exactmesh.triangulation import Triangulation
 
+    if isinstance(mesh, Refinement):
+        mesh = mesh.triangulation
     plain = Mesh(mesh.points, triangles=mesh.triangles, neighbors=mesh.neighbors, edges=mesh.edges)
     if not isinstance(mesh, Triangulation) or mesh.pslg is None:
         return plain

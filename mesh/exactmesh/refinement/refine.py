@@ -207,10 +207,10 @@ def refine(
         OptionError: a number is out of range, or ``size`` returned one that is not positive.
         ShapeError: a function returned something of the wrong shape or type; ``max_area`` does not fit the triangles.
         ChoiceError: ``steiner``, ``carve`` or ``crossings`` is none of the words.
-        ExactMeshError: for a graph, as :func:`exactmesh.constrained_delaunay` does.
+        Exception: what the functions raise; and, for a graph, what :func:`exactmesh.constrained_delaunay` raises.
 
-    What ``size`` and ``unsuitable`` raise comes through. Expected O(n log n) for n vertices of the output. Reference
-    [Ruppert 1995], [Shewchuk 2002], [Miller 2003], [Ungor 2004].
+    Expected O(n log n) for n vertices of the output. Reference [Ruppert 1995], [Shewchuk 2002], [Miller 2003],
+    [Ungor 2004].
 
     >>> from exactmesh import PSLG, refine
     >>> lake = PSLG.from_rings([[(0, 0), (9, 0), (9, 6), (0, 6)], [(4, 2), (4, 3), (5, 3), (5, 2)]])

@@ -130,5 +130,8 @@ def comparev(
 def _pair(figure: Figure, grid: tuple[int, int], A: Mapping[str, object], B: Mapping[str, object]) -> None:
     first = figure.add_subplot(*grid, 1)
     plot(first, **A)
+    limits = first.axis()
     plot(figure.add_subplot(*grid, 2, sharex=first, sharey=first), **B)
+    if any(key in B for key in _RAYS) and len(np.asarray(A["vertices"])):
+        first.axis(limits)  # circumcentres may be far away
     figure.tight_layout()

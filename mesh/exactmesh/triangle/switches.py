@@ -186,8 +186,9 @@ def parse(switches: str) -> Switches:
     exactmesh.triangle.errors.SwitchError: 'a1e-3' at 1 of 'pa1e-3': numbers have no exponents: write a0.001
     """
     if not isinstance(switches, str):
-        given = str(switches)
-        raise SwitchError("switches are a string, such as 'pq30'", switches=given, position=0, culprit=given)
+        raise SwitchError(
+            "switches are a string, such as 'pq30'", switches=str(switches), position=0, culprit=str(switches)
+        )
     reader = _Reader(switches)
     reader.read()
     result = reader.result()

@@ -93,8 +93,8 @@ class Property(StrEnum):
     GABRIEL = "gabriel"
     """For every edge of the boundary and every edge on a segment, no corner of a triangle is strictly inside its
     diametral circle and visible from a point inside the edge, that is, joined to it by a line segment in the union of
-    the triangles. UNDECIDED without ADMISSIBLE, SEGMENTS_PRESENT and DELAUNAY (with segments CONSTRAINED_DELAUNAY)
-    unless a violation is found."""
+    the triangles. UNDECIDED without ADMISSIBLE, SEGMENTS_PRESENT and DELAUNAY or CONSTRAINED_DELAUNAY unless a
+    violation is found."""
     CIRCUMCENTRES_INSIDE = "circumcentres_inside"
     """Every triangle has an area, and the union of the triangles contains its circumcentre. UNDECIDED without
     ADMISSIBLE unless a triangle has no area."""
