@@ -1,5 +1,7 @@
 """What went wrong once in refinement, each with the input that showed it."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -89,6 +91,27 @@ class TestForbiddenEdges:
         assert set(done.reasons.tolist()) == {Reason.FORBIDDEN}
         assert len(done.triangulation.boundary()[0]) == 4
         assert is_right(done)
+
+
+@pytest.mark.obligation("R1", "no edge with a new end is shorter than min_edge, by as little as may be")
+class TestLeastEdge:
+    """A length that rounds to the least edge, and is shorter, is refused; one that is the least edge is not."""
+
+    def test_rounded(self) -> None:
+        points = [*BOX, (0, 0), (-2.49688102, 5.45578456), (-0.74909287, 1.63672229)]
+        done = refine(PSLG(points, [*RING, (4, 5), (4, 6)]), min_angle=40, min_edge=0.5, max_steiner=3000)
+        mesh = done.triangulation
+        new = mesh.edges[mesh.edges.max(axis=1) >= len(points)]
+        for a, b in mesh.points[new].tolist():
+            dx, dy = (Fraction(p) - Fraction(q) for p, q in zip(a, b, strict=True))
+            assert dx * dx + dy * dy >= Fraction(1, 4)
+
+    def test_control_equal(self) -> None:
+        square = PSLG([(0, 0), (4, 0), (4, 4), (0, 4)], RING)
+        mesh = refine(
+            square, unsuitable=lambda corners, _: np.ones(len(corners), dtype=bool), min_edge=0.5
+        ).triangulation
+        assert mesh.statistics().shortest_edge == 0.5
 
 
 @pytest.mark.obligation("R1", "the displacement is a bound of the root of its exact square, at any scale")

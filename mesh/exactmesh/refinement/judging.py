@@ -2,7 +2,8 @@
 
 import math
 
-from exactkernel.jit import jit_inline
+from exactkernel.jit import jit, jit_inline
+from exactkernel.measure import length_code
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.refinement.insertion import is_inside
 from exactmesh.refinement.placement import shortest_edge
@@ -10,10 +11,12 @@ from exactmesh.refinement.queue import bucket_of, enqueue, forget
 from exactmesh.refinement.rules import Reason, Rules, SteinerKind, faults_of, is_encroached, joins_sharp_segments
 from exactmesh.refinement.sheet import ANGLE, GIVEN_UP, KNOWN, VERTICES, WAITING, Sheet, distance_squared
 
-__all__ = ["YIELDED_TO_SIZE", "accept", "await_split", "give_up", "judge", "nearest_squared", "settle"]
+__all__ = ["YIELDED_TO_SIZE", "accept", "await_split", "give_up", "is_crowded", "judge", "nearest_squared", "settle"]
 
 _SMALL_INPUT_ANGLE = int(Reason.SMALL_INPUT_ANGLE)
 _ENCROACHED = int(SteinerKind.ENCROACHED)
+
+_CLEAR = 1.001  # a square beyond that times another is larger, rounded as they are
 
 #: The cause of a point that divides a segment for a triangle that is too large: it is as close as was asked for.
 YIELDED_TO_SIZE = int(SteinerKind.YIELDED) | 4
@@ -89,6 +92,35 @@ def nearest_squared(s: Sheet, first: int, p: int) -> float:
         e = left_next(s.ring, spoke ^ 2)
         if origin(s.org, e) == last:
             return nearest
+
+
+@jit_inline
+def is_shorter(s: Sheet, length: float, a: int, b: int) -> bool:
+    """Tell whether the edge ab is shorter than the length, exactly."""
+    xy = s.xy
+    return (length_code(s.k, length, xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1]) & 3) == 0
+
+
+@jit
+def is_crowded(s: Sheet, rules: Rules, first: int, p: int, nearest: float) -> bool:
+    """Tell whether an edge at p is shorter than the least edge, exactly; ``nearest`` is the shortest's square, rounded.
+
+    First is the first edge of p's link.
+    """
+    if rules.min_edge == 0.0 or nearest > _CLEAR * rules.min_edge * rules.min_edge:
+        return False
+    e, last = first, origin(s.org, first)
+    if is_shorter(s, rules.min_edge, last, p):
+        return True
+    while True:
+        if is_shorter(s, rules.min_edge, dest(s.org, e), p):
+            return True
+        spoke = left_next(s.ring, e)
+        if not is_inside(s, spoke ^ 2):
+            return False
+        e = left_next(s.ring, spoke ^ 2)
+        if origin(s.org, e) == last:
+            return False
 
 
 @jit_inline

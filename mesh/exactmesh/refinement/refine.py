@@ -58,10 +58,10 @@ def _zones(mesh: Triangulation) -> tuple[IntArray, IntArray, FloatArray, FloatAr
     return zone.astype(np.int32), region, mesh.triangle_attributes[first], areas
 
 
-def _squared(length: float, exponent: int) -> float:
-    """Return the square of length times 2^exponent, infinite where it is too large, and not 0 unless the length is."""
-    square = float(np.square(np.ldexp(length, exponent)))
-    return max(square, TINIEST) if length > 0.0 else 0.0
+def _least(length: float, exponent: int) -> float:
+    """Return length times 2^exponent, infinite where it is too large, and not 0 unless the length is."""
+    scaled = float(np.ldexp(length, exponent))
+    return max(scaled, TINIEST) if length > 0.0 else 0.0
 
 
 def _scaled(areas: FloatArray, exponent: int) -> FloatArray:
@@ -99,7 +99,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * (areas if options.min_angle <= 30.0 else math.inf * areas)),
         origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
         origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
-        min_edge=_squared(options.min_edge, layout.exponent),
+        min_edge=_least(options.min_edge, layout.exponent),
         shrink=next(shrink * shrink for degrees, shrink in _SHRINKS if options.min_angle <= degrees),
         unit=layout.unit,
         longest=extent * extent,

@@ -59,7 +59,7 @@ class Rules(NamedTuple):
         has_area: whether there is any.
         lattice: the edges of the equilateral triangles to fill each zone with, infinite where there is no area bound.
         origin_x, origin_y: a point of the lattices.
-        min_edge: squared.
+        min_edge: the least edge.
         shrink: how much shorter, squared, an edge may be than its root where angles are concerned.
         unit: new coordinates are multiples of it.
         longest: a squared length that is about the largest.

@@ -16,7 +16,7 @@ from exactmesh.refinement.insertion import (
     spokes_are_delaunay,
     undo_flips,
 )
-from exactmesh.refinement.judging import accept, await_split, judge, nearest_squared, settle
+from exactmesh.refinement.judging import accept, await_split, is_crowded, judge, nearest_squared, settle
 from exactmesh.refinement.placement import is_finite
 from exactmesh.refinement.removal import remove_vertex
 from exactmesh.refinement.rules import Reason, Rules, SteinerKind, is_encroached
@@ -166,7 +166,7 @@ def divide_segment(s: Sheet, rules: Rules, e: int, parent: int, cause: int) -> N
     flips, _ = legalize(s, first_of_link(s, e, new), p)
     first = first_of_link(s, e, new)
     nearest, fault = nearest_squared(s, first, p), 0
-    if nearest < rules.min_edge:
+    if is_crowded(s, rules, first, p, nearest):
         fault = _MINIMUM_EDGE
     elif not is_on_line and not spokes_are_delaunay(s, first, p):
         fault = _PRECISION

@@ -6,7 +6,15 @@ Reference [Ruppert 1995], [Ungor 2004].
 from exactkernel.jit import jit, jit_inline
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.refinement.insertion import close_face, divide_edge, divide_face, legalize, rejoin_edge, seek, undo_flips
-from exactmesh.refinement.judging import YIELDED_TO_SIZE, accept, await_split, give_up, nearest_squared, settle
+from exactmesh.refinement.judging import (
+    YIELDED_TO_SIZE,
+    accept,
+    await_split,
+    give_up,
+    is_crowded,
+    nearest_squared,
+    settle,
+)
 from exactmesh.refinement.placement import is_finite, move_to_lattice, place_centre, place_centroid, shortest_edge
 from exactmesh.refinement.rules import Reason, Rules, SteinerKind, is_encroached
 from exactmesh.refinement.sheet import ANGLE, ASKED, FAULTS, FLIPS, SIZE, VERTICES, Sheet, distance_squared
@@ -63,7 +71,7 @@ def insert_for(s: Sheet, rules: Rules, half: int, e: int, zeros: int, p: int, pa
     first = left_next(s.ring, new)
     hits = hindrance(s, rules, p, walls)
     nearest = nearest_squared(s, first, p)
-    too_near = nearest < rules.min_edge
+    too_near = is_crowded(s, rules, first, p, nearest)
     if hits == 0 and not too_near:
         s.counts[FLIPS] += flips
         settle(s, nearest, p, parent, _INTERIOR, root, -1)
