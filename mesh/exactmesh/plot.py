@@ -207,7 +207,7 @@ def _draw_triangles(axes: Axes, drawn: FloatArray, triangles: IntArray, smallest
         return
     # matplotlib is fast for (m, k, 2) arrays, though it is typed for sequences of arrays only
     faces = PolyCollection(
-        drawn[triangles],  # type: ignore[arg-type]
+        drawn[triangles],  # type: ignore[arg-type]  # see above
         array=smallest,
         cmap=_COLORS,
         linewidths=0,

@@ -81,13 +81,14 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
     """Return the rules in the coordinates of the sheet."""
     cosine = math.cos(math.radians(options.min_angle))
     tangent = math.tan(0.5 * math.radians(options.min_angle))
-    # a point inside of an equilateral triangle makes angles of 30 degrees at most
     if isinstance(options.max_area, float):
         areas = np.minimum(areas, options.max_area)
     areas = _scaled(areas, 2 * layout.exponent)
     vertices = int(layout.sheet.counts[VERTICES])
     extent = float(np.ptp(layout.sheet.xy[: 2 * vertices].reshape(-1, 2), axis=0).max())
     room = min(room_for(_BYTES_PER_VERTEX), MAX_POINTS)
+    # A point put into an equilateral triangle makes angles of 30 degrees at most: beyond, a lattice falls to pieces.
+    filled = areas if options.min_angle <= 30.0 else np.full_like(areas, math.inf)
     return Rules(
         angle=angle_bound(options.min_angle),
         has_angle=options.min_angle > 0.0,
@@ -96,7 +97,7 @@ def _rules(layout: Layout, options: Options, areas: FloatArray) -> Rules:
         gabriel=options.conforming,
         areas=areas,
         has_area=bool((areas < math.inf).any()),
-        lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * (areas if options.min_angle <= 30.0 else math.inf * areas)),
+        lattice=np.sqrt(_FILLED * 4.0 / math.sqrt(3.0) * filled),
         origin_x=float(layout.sheet.xy[0 : 2 * vertices : 2].min()),
         origin_y=float(layout.sheet.xy[1 : 2 * vertices : 2].min()),
         min_edge=_least(options.min_edge, layout.exponent),

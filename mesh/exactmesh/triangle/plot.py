@@ -80,7 +80,7 @@ def _draw_lines(ax: Axes, lines: FloatArray, color: str, width: float) -> None:
     from matplotlib.collections import LineCollection
 
     # matplotlib takes (k, 2, 2) arrays, though it is typed for sequences of arrays only
-    ax.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]
+    ax.add_collection(LineCollection(lines, colors=color, linewidths=width))  # type: ignore[arg-type]  # as said
 
 
 def _draw_seeds(ax: Axes, content: Mapping[str, npt.NDArray[np.generic]]) -> None:

@@ -91,7 +91,7 @@ def check_hull(mesh: Triangulation) -> None:
     """
     check_delaunay(mesh)
     try:
-        mesh.hull  # noqa: B018  it raises
+        mesh.hull  # noqa: B018  # it raises
     except TopologyError:
         raise TopologyError(
             "the triangulation does not cover the convex hull of its vertices: clip the diagram to its domain by "
