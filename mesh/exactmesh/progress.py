@@ -10,7 +10,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 __all__ = ["COMPILING", "working"]
 
 #: What the first run on a machine says.
-COMPILING = "compiling, once on this machine; a quarter of a minute"
+COMPILING = "compiling, once on this machine; a minute or so"
 
 _PATIENCE = 1.0  # seconds; shorter work shows nothing
 
