@@ -21,6 +21,7 @@
 
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
+    ADMISSIBLE_MESH,
     CONFORMING_TRIANGULATION,
     CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
@@ -36,6 +37,7 @@ from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, Verifica
 from exactmesh.verify.verifier import verify
 
 __all__ = [
+    "ADMISSIBLE_MESH",
     "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",

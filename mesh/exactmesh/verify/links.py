@@ -2,9 +2,9 @@
 Delaunay in one.
 
 The directed edge v -> b has one slot for each triangle (v, b, c) that lists it, in the bucket of v, sorted by
-b and c. So a directed edge that occurs twice makes two neighbouring slots, and the triangle on the other side
-of the edge (v, b) is the slot of v whose c is this b. No hash, no sort but within a bucket: linear time for
-bounded degrees.
+b and c; of a quadrilateral (v, b, x, c) the slot is the same. So a directed edge that occurs twice makes two
+neighbouring slots, and the cell on the other side of the edge (v, b) is the slot of v whose c is this b. No hash, no
+sort but within a bucket: linear time for bounded degrees.
 """
 
 from typing import NamedTuple
@@ -50,8 +50,8 @@ class Links(NamedTuple):
 
     Attributes:
         first: int64 (n + 1,): the slots of v are first[v] .. first[v + 1] - 1.
-        slots: int64 (3m,): b * 2^32 + c, ascending within a vertex.
-        kinds: int8 (3m,): INNER, BOUNDARY, ...
+        slots: int64 (3m + 4k,): b * 2^32 + c, ascending within a vertex.
+        kinds: int8 (3m + 4k,): INNER, BOUNDARY, ...
     """
 
     first: LongArray
@@ -82,6 +82,24 @@ def fill_slots(triangles: IntArray, ends: LongArray, slots: LongArray) -> None:
 
 
 @jit
+def count_quad_corners(quads: IntArray, degrees: LongArray) -> None:
+    """Count the quadrilaterals at each vertex."""
+    for q in range(len(quads)):
+        for i in range(4):
+            degrees[quads[q, i]] += 1
+
+
+@jit
+def fill_quad_slots(quads: IntArray, ends: LongArray, slots: LongArray) -> None:
+    """Go on filling each bucket from its end."""
+    for q in range(len(quads)):
+        for i in range(4):
+            v, b, c = quads[q, i], np.int64(quads[q, (i + 1) & 3]), np.int64(quads[q, (i + 3) & 3])
+            ends[v] -= 1
+            slots[ends[v]] = (b << 32) | c
+
+
+@jit
 def sort_bucket(slots: LongArray, begin: int, end: int) -> None:
     """Sort by insertion: small buckets, or sorted ones."""
     for i in range(begin + 1, end):
@@ -107,8 +125,8 @@ def slot_of(slots: LongArray, begin: int, end: int, b: int) -> int:
 
 
 @jit
-def match_slots(k: Context, points: FloatArray, links: Links, v_begin: int, v_end: int) -> None:
-    """Sort the buckets of some vertices and tell the kinds of their slots."""
+def match_slots(k: Context, points: FloatArray, links: Links, circles: bool, v_begin: int, v_end: int) -> None:
+    """Sort the buckets of some vertices and tell the kinds of their slots, NOT_DELAUNAY only with ``circles``."""
     first, slots, kinds = links
     for v in range(v_begin, v_end):
         begin, end = first[v], first[v + 1]
@@ -124,7 +142,7 @@ def match_slots(k: Context, points: FloatArray, links: Links, v_begin: int, v_en
                 kinds[j] = CROWDED
                 continue
             kinds[j] = INNER
-            if v < b and (j + 1 == end or kinds[j + 1] != REPEATED):
+            if circles and v < b and (j + 1 == end or kinds[j + 1] != REPEATED):
                 c, d = slots[j] & _LOW, slots[i] >> 32
                 if incircle_adaptive(
                     k, points[v, 0], points[v, 1], points[b, 0], points[b, 1],
@@ -133,20 +151,23 @@ def match_slots(k: Context, points: FloatArray, links: Links, v_begin: int, v_en
                     kinds[j] = NOT_DELAUNAY
 
 
-def linked(points: FloatArray, context: Context, triangles: IntArray) -> Links:
+def linked(points: FloatArray, context: Context, triangles: IntArray, quads: IntArray) -> Links:
     """Return the links of all vertices. Linear time but for sorting the buckets of vertices of large
-    degree."""
+    degree. Where there are quadrilaterals no slot is NOT_DELAUNAY."""
     first = np.zeros(len(points) + 1, dtype=np.int64)
     count_corners(triangles, first)
+    count_quad_corners(quads, first)
     large = np.flatnonzero(first >= _LARGE)
     np.cumsum(first, out=first)
-    links = Links(first, np.empty(3 * len(triangles), np.int64), np.empty(3 * len(triangles), np.int8))
+    size, circles = 3 * len(triangles) + 4 * len(quads), not len(quads)
+    links = Links(first, np.empty(size, np.int64), np.empty(size, np.int8))
     fill_slots(triangles, first, links.slots)
+    fill_quad_slots(quads, first, links.slots)
     for v in large:
         links.slots[first[v] : first[v + 1]].sort()
     step = chunk_size(context, _CHUNK)
     for begin in range(0, len(points), step):
-        match_slots(context, points, links, begin, min(begin + step, len(points)))
+        match_slots(context, points, links, circles, begin, min(begin + step, len(points)))
         raise_if_interrupted()
     return links
 
