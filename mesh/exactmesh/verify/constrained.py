@@ -165,7 +165,7 @@ def _free(tiled: Tiled) -> IndexArray:
 
 
 def _used(links: Links) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    return links.first[1:] > links.first[:-1]
+    return links.last > links.first
 
 
 def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) -> Placed:

@@ -164,6 +164,6 @@ def _far_corners(links: Links, v: IndexArray, b: IndexArray) -> IndexArray:
     """Return the third corners of the triangles (v, d, b)."""
     far = np.empty_like(v)
     for i, (origin, target) in enumerate(zip(v.tolist(), b.tolist(), strict=True)):
-        bucket = links.slots[links.first[origin] : links.first[origin + 1]]
+        bucket = links.slots[links.first[origin] : links.last[origin]]
         far[i] = bucket[np.flatnonzero((bucket & 0xFFFFFFFF) == target)[0]] >> 32
     return far

@@ -10,6 +10,7 @@ from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, Sign, SignArray
+from exactmesh.verify.local import Local
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Orientation, Property
 from exactmesh.verify.report import Finding, Violation
@@ -61,20 +62,14 @@ def classify(k: Context, points: FloatArray, triangles: IntArray, orientation: S
         widest[t] = max(at_a, max(at_b, at_c))
 
 
-def classified(mesh: Mesh) -> Shapes:
+def classified(context: Context, local: Local) -> Shapes:
     """Return the signs of all triangles. O(m)."""
-    m = len(mesh.triangles)
+    m = len(local.triangles)
     shapes = Shapes(np.empty(m, dtype=np.int8), np.empty(m, dtype=np.int8))
-    step = chunk_size(mesh.context, CHUNK)
+    step = chunk_size(context, CHUNK)
     for start in range(0, m, step):
         part = slice(start, start + step)
-        classify(
-            mesh.context,
-            mesh.coordinates,
-            mesh.triangles[part],
-            shapes.orientation[part],
-            shapes.widest[part],
-        )
+        classify(context, local.points, local.triangles[part], shapes.orientation[part], shapes.widest[part])
         raise_if_interrupted()
     return shapes
 

@@ -86,7 +86,8 @@ def rows_of_triangles(triangles: IntArray, wanted: Sequence[tuple[int, ...]], n:
     near = np.zeros(n, dtype=np.bool_)
     near[[v for corners in wanted for v in corners]] = True
     found: dict[frozenset[int], list[int]] = {frozenset(corners): [] for corners in wanted}
-    for row in np.flatnonzero(near[triangles].all(axis=1)):
+    candidates = np.flatnonzero(near[triangles[:, 0]])
+    for row in candidates[near[triangles[candidates, 1]] & near[triangles[candidates, 2]]]:
         rows = found.get(frozenset(triangles[row].tolist()))
         if rows is not None and len(rows) < _NAMED_ROWS:
             rows.append(int(row))
