@@ -53,6 +53,7 @@ class Links(NamedTuple):
     Attributes:
         first, last: int64 (n,): the slots of v are first[v] .. last[v] - 1.
         order: int32 (k,): the corners in the order of their buckets.
+        starts: int64 (k,): where these begin.
         slots: int64 (3m,): b * 2^32 + c; ascending within a vertex that has 64 or more, or a repeated edge.
         kinds: int8 (3m,): INNER, BOUNDARY, ...
     """
@@ -60,6 +61,7 @@ class Links(NamedTuple):
     first: LongArray
     last: LongArray
     order: IntArray
+    starts: LongArray
     slots: LongArray
     kinds: KindArray
 
@@ -222,7 +224,7 @@ def linked(n: int, context: Context, local: Local) -> Links:
     name_slots(local.order, slots)
     ends = np.zeros((2, n), dtype=np.int64)
     ends[0, local.order], ends[1, local.order] = first[:-1], first[1:]
-    return Links(ends[0], ends[1], local.order, slots, kinds)
+    return Links(ends[0], ends[1], local.order, first[:-1], slots, kinds)
 
 
 def slots_of(links: Links, kind: int) -> IndexArray:
@@ -233,5 +235,5 @@ def slots_of(links: Links, kind: int) -> IndexArray:
 def ends_of(links: Links, slots: IndexArray) -> tuple[IndexArray, IndexArray, IndexArray]:
     """Return v, b, c of slots: their triangles, from the corner of the bucket on."""
     packed = links.slots[slots]
-    corner = np.searchsorted(links.first[links.order], slots, side="right") - 1 if slots.size else slots
+    corner = np.searchsorted(links.starts, slots, side="right") - 1
     return links.order[corner].astype(np.intp), packed >> 32, packed & _LOW
