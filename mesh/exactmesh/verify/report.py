@@ -2,11 +2,12 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from exactkernel.errors import ExactMeshError
 from exactkernel.types import Sign, Stage
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
 
 __all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
@@ -123,6 +124,7 @@ class Report:
         claims: the properties that were claimed.
         point_count, triangle_count: the size of the input.
         stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
+        mesh: what was checked; two reports that say the same are equal whatever it is.
 
     >>> from exactmesh.verify import Property, verify
     >>> report = verify([(0, 0), (4, 0), (0, 3)], [(0, 2, 1)])
@@ -137,6 +139,7 @@ class Report:
     point_count: int
     triangle_count: int
     stages: Mapping[str, Mapping[Stage, int]]
+    mesh: CheckedMesh | None = field(default=None, compare=False)
 
     def __bool__(self) -> bool:
         """Tell whether every claimed property holds, so that ``assert verify(...)`` means what it says."""

@@ -15,6 +15,7 @@ from exactmesh.verify.boundary import Boundary, boundary_of, convex_cycle
 from exactmesh.verify.bounds import Bounds, bounds_of, check_angle_bound, check_areas
 from exactmesh.verify.centres import check_centres
 from exactmesh.verify.chains import Marks
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
 from exactmesh.verify.domain import Constraints, Domain, constraints_of
@@ -133,7 +134,22 @@ def verify(
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
         },
+        mesh=CheckedMesh(
+            doubles,
+            triples,
+            segments=constraints.segments,
+            labels=constraints.labels,
+            domain=constraints.outline,
+            bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
+            orientation=chosen,
+        ),
     )
+
+
+def _numbers(**bounds: npt.ArrayLike | None) -> dict[str, float | FloatArray]:
+    """Return what was given, as doubles."""
+    given = {name: np.asarray(bound, dtype=np.float64) for name, bound in bounds.items() if bound is not None}
+    return {name: array if array.ndim else float(array) for name, array in given.items()}
 
 
 @dataclass(frozen=True, slots=True)
