@@ -17,6 +17,7 @@ from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, SignArray
+from exactmesh.verify.local import Local
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Orientation, Property
 from exactmesh.verify.report import Finding, Violation
@@ -45,6 +46,10 @@ class Cells(NamedTuple):
     triangles: IntArray
     quads: IntArray
 
+    def are(self, others: "Cells") -> bool:
+        """Tell whether these are the same arrays."""
+        return self.triangles is others.triangles and self.quads is others.quads
+
 
 @jit
 def classify_turns(k: Context, points: FloatArray, quads: IntArray, turns: SignArray) -> None:
@@ -57,13 +62,13 @@ def classify_turns(k: Context, points: FloatArray, quads: IntArray, turns: SignA
             )
 
 
-def turns_of(mesh: Mesh) -> SignArray:
+def turns_of(context: Context, local: Local) -> SignArray:
     """Return int8 (k, 4): the sign of the turn at each corner of each quadrilateral. O(k)."""
-    turns = np.empty(mesh.quads.shape, dtype=np.int8)
-    step = chunk_size(mesh.context, CHUNK)
+    turns = np.empty(local.quads.shape, dtype=np.int8)
+    step = chunk_size(context, CHUNK)
     for start in range(0, len(turns), step):
         part = slice(start, start + step)
-        classify_turns(mesh.context, mesh.coordinates, mesh.quads[part], turns[part])
+        classify_turns(context, local.points, local.quads[part], turns[part])
         raise_if_interrupted()
     return turns
 

@@ -24,12 +24,14 @@ from exactmesh.verify.cells import (
 )
 from exactmesh.verify.centres import check_centres
 from exactmesh.verify.chains import Marks
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
 from exactmesh.verify.domain import Constraints, Domain, constraints_of
 from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
+from exactmesh.verify.local import Local, localized
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
 from exactmesh.verify.mesh import (
     Mesh,
@@ -202,6 +204,16 @@ def verify(
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
         },
+        mesh=CheckedMesh(
+            doubles,
+            triples,
+            fours,
+            segments=constraints.segments,
+            labels=constraints.labels,
+            domain=constraints.outline,
+            bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
+            orientation=chosen,
+        ),
     )
 
 
@@ -238,6 +250,12 @@ def _of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
     )
 
 
+def _numbers(**bounds: npt.ArrayLike | None) -> dict[str, float | FloatArray]:
+    """Return what was given, as doubles."""
+    given = {name: np.asarray(bound, dtype=np.float64) for name, bound in bounds.items() if bound is not None}
+    return {name: array if array.ndim else float(array) for name, array in given.items()}
+
+
 @dataclass(frozen=True, slots=True)
 class Tiling:
     """What is known about the triangles with area and the convex quadrilaterals, counterclockwise, when their
@@ -258,17 +276,17 @@ def check_mesh(
     decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide everything about finite points and valid cells; ``positions`` are those of the domain."""
-    shapes = classified(mesh, turns_of(mesh))
+    local = localized(mesh.coordinates, mesh.triangles, mesh.quads)
+    shapes = classified(mesh.context, local, turns_of(mesh.context, local))
     cells = upright_cells(mesh, shapes)
     listed = cells if orientation is Orientation.ANY else Cells(mesh.triangles, mesh.quads)
     proper = proper_cells(cells, shapes)
-    tiling = tiled(mesh, shapes, proper)
-    same = all(one is other for one, other in zip(listed, proper, strict=True))
-    links = tiling.links if same else linked(mesh.coordinates, mesh.context, *listed)
+    tiling = tiled(mesh, shapes, _links(mesh, proper, local))
+    links = tiling.links if listed.are(proper) else _links(mesh, listed, local)
     upright, unused = cells.triangles, unused_points(links)
     findings = {
         Property.ORIENTATION: joined(
-            check_orientation(mesh, shapes, orientation), check_quad_orientation(mesh, shapes, orientation)
+            (check_orientation(mesh, shapes, orientation), check_quad_orientation(mesh, shapes, orientation))
         ),
         Property.CONVEX: check_convex(mesh, shapes),
         Property.ALL_POINTS_USED: check_used(mesh, unused),
@@ -322,11 +340,17 @@ def _missing_for_circles(links: Links, marks: Marks, findings: dict[Property, Fi
     return tuple(missing)
 
 
-def tiled(mesh: Mesh, shapes: Shapes, proper: Cells) -> Tiling:
+def _links(mesh: Mesh, cells: Cells, local: Local) -> Links:
+    """Return the links of cells; ``local`` is the copy of those that were listed."""
+    if not cells.are(Cells(mesh.triangles, mesh.quads)):
+        local = localized(mesh.coordinates, *cells)
+    return linked(len(mesh.points), mesh.context, local)
+
+
+def tiled(mesh: Mesh, shapes: Shapes, links: Links) -> Tiling:
     """Decide ADMISSIBLE: triangles without area and quadrilaterals that are not convex, then edges with two cells on a
     side, then the boundary."""
-    links = linked(mesh.coordinates, mesh.context, *proper)
-    improper = joined(check_zero_area(mesh, shapes), check_convex(mesh, shapes, Property.ADMISSIBLE))
+    improper = joined((check_zero_area(mesh, shapes), check_convex(mesh, shapes, Property.ADMISSIBLE)))
     for finding in (improper, check_overlap(mesh, links)):
         if finding.verdict is Verdict.FAILS:
             return Tiling(links, replace(finding, lower_bound=True), None, None)
@@ -361,7 +385,7 @@ def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArr
         first = first_at_position(mesh.points)
         distinct = check_distinct(mesh.points, first)
         if not missing and len(mesh.triangles) and not len(mesh.quads):
-            used = np.flatnonzero(tiling.links.first[1:] > tiling.links.first[:-1])
+            used = np.flatnonzero(tiling.links.last > tiling.links.first)
             enclosed = enclosed_points(unused, used, first)
     findings = {Property.DISTINCT_POINTS: distinct, Property.COVERS_HULL: hull}
     if not len(mesh.quads):
