@@ -13,16 +13,20 @@ from exactmesh.crossings import Meeting, find_crossings
 
 __all__ = ["Given", "IndexArray", "Trait"]
 
+_LARGE = 2.0**250
+
 IndexArray = npt.NDArray[np.int64]
 
 
 class Trait(StrEnum):
-    """What an input has that not every mesher has to take."""
+    """What an input has that makes it less ordinary. Of two that show the same, the more ordinary one is told."""
 
     FLAT = "flat"
     """All points lie on one line: there is no triangle, and an exception is an answer."""
     DUPLICATES = "duplicates"
     """Several points at one position: any one of them may stand for all."""
+    EXTREME = "extreme"
+    """A coordinate beyond 2^250, or below 2^-250 and not 0: its fourth power, as incircle has it, is no double."""
     CROSSING = "crossing"
     """Segments that cross or overlap: there is no triangulation of these points with these segments, so an exception is
     an answer; if there are triangles, they tile the hull without overlap."""
@@ -65,9 +69,9 @@ class Given:
         return f"({points}, [{', '.join(f'({a}, {b})' for a, b in self.segments.tolist())}])"
 
     @property
-    def size(self) -> tuple[int, int, int]:
-        """What makes an input smaller than another: fewer points, fewer segments, fewer digits."""
-        return len(self.points), 0 if self.segments is None else len(self.segments), len(self.literal)
+    def size(self) -> tuple[int, int, int, int]:
+        """What makes an input smaller than another: fewer traits, fewer points, fewer segments, fewer digits."""
+        return len(self.traits), len(self.points), 0 if self.segments is None else len(self.segments), len(self.literal)
 
     @cached_property
     def traits(self) -> frozenset[Trait]:
@@ -78,6 +82,9 @@ class Given:
             found.add(Trait.DUPLICATES)
         if len(positions) < 3 or not orient2d_batch(positions[0], positions[-1], positions).any():
             found.add(Trait.FLAT)
+        magnitudes = np.abs(self.points[self.points != 0])
+        if ((magnitudes > _LARGE) | (magnitudes < 1 / _LARGE)).any():
+            found.add(Trait.EXTREME)
         if self.segments is not None and len(self.segments):
             kinds = find_crossings(self.points, self.segments).kinds
             if (kinds != Meeting.TOUCH).any():

@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 from exactmesh.verify import Property
 
-__all__ = ["LAWS", "Behaviour", "Law", "Outcome", "Task", "is_worse", "law_named"]
+__all__ = ["LAWS", "Behaviour", "Law", "Outcome", "Task", "is_worse"]
 
 
 class Task(StrEnum):
@@ -85,13 +85,3 @@ def is_worse(outcome: Outcome, other: Outcome) -> bool:
     """
     order = tuple(Outcome)
     return order.index(outcome) > order.index(other)
-
-
-def law_named(name: str) -> Law:
-    """Return the law of that name; ``-`` stands for ``_``.
-
-    Raises:
-        ValueError: there is none.
-    """
-    word = str(name).replace("-", "_")
-    return Behaviour(word) if word in tuple(Behaviour) else Property(word)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from types import TracebackType
@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.types import FloatArray
 from exactmesh.conformance.child import IN_CHILD
-from exactmesh.conformance.given import Given
+from exactmesh.conformance.given import Given, IndexArray
 from exactmesh.errors import MesherError
 
 __all__ = ["Answer", "Fate", "Limits", "MesherProcess"]
@@ -57,13 +57,13 @@ class Answer:
     fate: Fate
     message: str = ""
     points: FloatArray | None = None
-    triangles: IntArray | None = None
+    triangles: IndexArray | None = None
     orientation: str | None = None
     kept: bool = True
     repeats: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Limits:
     """What one call may take.
 
@@ -99,6 +99,7 @@ class MesherProcess:
         self._warm_up: Given | None = Given(_SQUARE, _RING if segments else None)
         self._child: subprocess.Popen[bytes] | None = None
         self.restarts = -1
+        self._threads: list[threading.Thread] = []
 
     def __enter__(self) -> "MesherProcess":
         return self
@@ -106,16 +107,22 @@ class MesherProcess:
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
 
-    def ask(self, given: Given, *, twice: bool = True) -> Answer:
-        """Return what the mesher makes of the input; ``twice``: and whether it makes the same of it again."""
-        if self._child is None:
-            self._start()
-        if self._warm_up is not None:  # in its first call it may compile
-            warm_up, self._warm_up = self._warm_up, None
-            self._call(warm_up, self.limits.start_seconds, twice=False)
-            if self._child is None:
-                self._start()
-        return self._call(given, self.limits.seconds, twice=twice)
+    def warm_up(self) -> None:
+        """Start the process, and let the mesher compile in a first call, of which nothing is told."""
+        warm_up, self._warm_up = self._warm_up, None
+        if warm_up is not None:
+            self._call(warm_up, self.limits.start_seconds)
+
+    def ask(self, given: Given) -> Answer:
+        """Return what the mesher makes of the input, asked twice."""
+        self.warm_up()
+        first = self._call(given, self.limits.seconds)
+        if first.fate is not Fate.ANSWERED:
+            return first
+        second = self._call(given, self.limits.seconds)
+        if second.fate in (Fate.DIED, Fate.HUNG):
+            return replace(second, message=f"asked a second time, it {second.message}")
+        return replace(first, repeats=_same(first, second))
 
     def close(self) -> None:
         """End the process."""
@@ -181,10 +188,11 @@ class MesherProcess:
         last = next((line for line in reversed(self._printed) if line.strip()), "")
         return {"fate": "died", "message": _ending(code) + (f": {last.strip()}" if last else "")}
 
-    def _call(self, given: Given, seconds: float, *, twice: bool) -> Answer:
-        arrays = (given.points,) if given.segments is None else (given.points, given.segments)
-        self._send((arrays, seconds * (1 + twice), twice))
-        answer = self._receive(seconds * (1 + twice))
+    def _call(self, given: Given, seconds: float) -> Answer:
+        if self._child is None:
+            self._start()
+        self._send(((given.points,) if given.segments is None else (given.points, given.segments), seconds))
+        answer = self._receive(seconds)
         return Answer(
             Fate(answer["fate"]),
             answer["message"],
@@ -192,8 +200,16 @@ class MesherProcess:
             answer.get("triangles"),
             answer.get("orientation"),
             answer.get("kept", True),
-            answer.get("repeats", True),
         )
+
+
+def _same(first: Answer, second: Answer) -> bool:
+    pairs = ((first.points, second.points), (first.triangles, second.triangles))
+    return all((a is None) == (b is None) and (a is None or _equal(a, b)) for a, b in pairs)
+
+
+def _equal(a: FloatArray | IndexArray, b: FloatArray | IndexArray | None) -> bool:
+    return b is not None and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
 def _ending(code: int) -> str:

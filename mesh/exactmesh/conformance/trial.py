@@ -1,13 +1,13 @@
 """One mesher on trial: every input is tried once, and what it said is kept."""
 
+import math
 import time
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from exactmesh.conformance.given import Given
 from exactmesh.conformance.judge import Fault, Judgement, check_legal, judged
 from exactmesh.conformance.laws import Law, Outcome, Task, is_worse
-from exactmesh.conformance.process import MesherProcess
+from exactmesh.conformance.process import Fate, MesherProcess
 from exactmesh.errors import ExactMeshError
 
 __all__ = ["Clock", "Evidence", "Trial"]
@@ -31,11 +31,12 @@ class Clock:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """An input on which a law is broken."""
+    """An input on which a law is broken, and the family that it belongs to."""
 
     law: Law
     fault: Fault
     given: Given
+    source: str
 
 
 class Trial:
@@ -45,10 +46,11 @@ class Trial:
     the mesher flaky. After the budget is spent nothing new is tried.
     """
 
-    def __init__(self, process: MesherProcess, task: Task, orientation: str, on_try: Callable[[], None]) -> None:
-        self._process, self._task, self._orientation, self._on_try = process, task, orientation, on_try
+    def __init__(self, process: MesherProcess, task: Task, orientation: str) -> None:
+        self._process, self._task, self._orientation = process, task, orientation
         self._known: dict[bytes, Judgement] = {}
         self.clock = Clock(0.0)
+        self.source, self._patience, self._hung = "", math.inf, 0
         self._worst: dict[Law, list[Evidence]] = {}
         self.judged: dict[Law, int] = {}
 
@@ -57,21 +59,30 @@ class Trial:
         """How many different inputs the mesher was given."""
         return len(self._known)
 
+    def begin(self, source: str, clock: Clock, *, patience: float = math.inf) -> None:
+        """Go on to another family of inputs, for so long, and until the mesher hung so often."""
+        self.source, self.clock, self._patience, self._hung = source, clock, patience, 0
+
+    @property
+    def patient(self) -> bool:
+        """Whether anything new is tried."""
+        return bool(self.clock.left) and self._hung < self._patience
+
     def judgement(self, given: Given) -> Judgement:
         """Return what the mesher's answer says; nothing where the budget is spent."""
         found = self._known.get(given.key)
         if found is not None:
             return found
-        if not self.clock.left:
+        if not self.patient:
             return {}
         answer = self._process.ask(given)
         found = judged(self._task, given, answer, self._orientation)
         self._known[given.key] = found
-        self._on_try()
+        self._hung += answer.fate is Fate.HUNG
         for law, fault in found.items():
             self.judged[law] = self.judged.get(law, 0) + 1
             if fault is not None:
-                self._keep(Evidence(law, fault, given))
+                self._keep(Evidence(law, fault, given, self.source))
         return found
 
     def outcome(self, given: Given, law: Law) -> Outcome:
@@ -86,10 +97,6 @@ class Trial:
         except ExactMeshError:
             return False
         return True
-
-    def broken(self) -> Iterator[Law]:
-        """Yield the laws of which a breach was found."""
-        yield from self._worst
 
     def worst(self, law: Law) -> list[Evidence]:
         """Return the evidence for the worst outcome of a law, smallest input first."""
