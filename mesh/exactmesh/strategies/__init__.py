@@ -22,7 +22,10 @@ except ImportError:
         "exactmesh.strategies needs hypothesis, which is not installed: pip install 'exactmesh[hypothesis]'"
     ) from None
 
+from exactmesh.strategies.graphs import pslgs
+from exactmesh.strategies.lines import near_concurrent, slits, small_angles, t_junctions
 from exactmesh.strategies.point_sets import duplicate_points, points
+from exactmesh.strategies.polygons import polygons, polygons_with_holes, shared_borders, spirals
 from exactmesh.strategies.regular import cocircular_points, collinear_points, grid_points, tilted_grid_points
 from exactmesh.strategies.scattered import (
     clustered_points,
@@ -40,8 +43,17 @@ __all__ = [
     "far_points",
     "grid_points",
     "mixed_scale_points",
+    "near_concurrent",
     "points",
+    "polygons",
+    "polygons_with_holes",
+    "pslgs",
+    "shared_borders",
+    "slits",
+    "small_angles",
+    "spirals",
     "subnormal_points",
+    "t_junctions",
     "tilted_grid_points",
     "uniform_points",
 ]

@@ -43,23 +43,33 @@ def check_sizes(min_size: int, max_size: int, least: int = 0) -> None:
     for name, size in (("min_size", min_size), ("max_size", max_size)):
         if isinstance(size, bool) or not isinstance(size, int):
             raise OptionError(f"{name}={shown(size)} is no integer")
-    if min_size < least:
-        raise OptionError(f"min_size={min_size}: at least {least} are needed")
+    if min_size < 0:
+        raise OptionError(f"min_size={min_size} is negative")
     if max_size < min_size:
         raise OptionError(f"max_size={max_size} is below min_size={min_size}")
+    if max_size < least:
+        raise OptionError(f"max_size={max_size}: {least} points are needed")
+
+
+def words(min_size: int, max_size: int) -> st.SearchStrategy[Words]:
+    """Draw numbers below 2^20, most of them below 256, as one choice. They shrink to zeros."""
+    return st.text(_ALPHABET, min_size=min_size, max_size=max_size).map(_words_of)
+
+
+def _words_of(text: str) -> Words:
+    return (np.frombuffer(text.encode("utf-32-le"), dtype="<u4") - np.uint32(_FIRST)).astype(np.uint64)
 
 
 def codes(min_size: int, max_size: int) -> st.SearchStrategy[Words]:
     """Draw distinct numbers, most of them below 256, as one choice. They shrink to 0, 1, 2, ..."""
-    return st.text(_ALPHABET, min_size=min_size, max_size=max_size).map(_codes_of)
+    return words(min_size, max_size).map(_spread)
 
 
-def _codes_of(text: str) -> Words:
-    drawn = np.frombuffer(text.encode("utf-32-le"), dtype="<u4").astype(np.int64) - _FIRST
+def _spread(drawn: Words) -> Words:
     order = np.argsort(drawn, kind="stable")
     steps = np.arange(len(drawn))
-    spread = np.empty(len(drawn), dtype=np.uint64)
-    spread[order] = np.maximum.accumulate(drawn[order] - steps) + steps  # the next that is free, if one is taken
+    spread = np.empty_like(drawn)
+    spread[order] = np.maximum.accumulate(drawn[order].astype(np.int64) - steps) + steps  # if taken, the next one
     return spread
 
 

@@ -19,6 +19,7 @@
   incircle: not called
 """
 
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
     CONFORMING_TRIANGULATION,
@@ -42,6 +43,7 @@ __all__ = [
     "DOMAIN_TRIANGULATION",
     "FORMAT",
     "WITNESSES",
+    "CheckedMesh",
     "ChoiceError",
     "Domain",
     "Finding",
