@@ -12,6 +12,7 @@ from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, ar
 from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
+    AdapterError,
     BoundError,
     ChoiceError,
     ClipError,
@@ -26,7 +27,9 @@ from exactmesh.errors import (
     FaultKind,
     FileFormatError,
     GeometryError,
+    HypothesisUnavailableError,
     InadmissibleError,
+    MesherError,
     NonFiniteError,
     NotConformingError,
     NotDelaunayError,
@@ -63,6 +66,7 @@ __version__ = "0.1.0"
 __all__ = [
     "OUTSIDE",
     "PSLG",
+    "AdapterError",
     "Arrangement",
     "BoundError",
     "Carve",
@@ -83,8 +87,10 @@ __all__ = [
     "FaultKind",
     "FileFormatError",
     "GeometryError",
+    "HypothesisUnavailableError",
     "InadmissibleError",
     "Meeting",
+    "MesherError",
     "NaturalNeighbors",
     "NonFiniteError",
     "NotConformingError",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "AdapterError",
     "BoundError",
     "ChoiceError",
     "ClipError",
@@ -39,7 +40,9 @@ __all__ = [
     "FaultKind",
     "FileFormatError",
     "GeometryError",
+    "HypothesisUnavailableError",
     "InadmissibleError",
+    "MesherError",
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
@@ -53,6 +56,10 @@ __all__ = [
     "TooManyPointsError",
     "TopologyError",
 ]
+
+
+class AdapterError(ExactMeshError):
+    """An object that is no mesh of triangles and quadrilaterals in the plane; ``indices`` are the culprits in it."""
 
 
 class ChoiceError(ExactMeshError):
@@ -141,6 +148,14 @@ class SnappingError(ExactMeshError):
 
 class TopologyError(ExactMeshError):
     """Indices that do not describe a triangulation, or an edge operation that the edge does not allow."""
+
+
+class MesherError(ExactMeshError):
+    """A mesher that cannot be put to the test: it cannot be found, imported or called in a process of its own."""
+
+
+class HypothesisUnavailableError(ExactMeshError, ImportError):
+    """hypothesis, which draws the inputs of :mod:`exactmesh.strategies`, is not installed."""
 
 
 class InadmissibleError(ExactMeshError):

@@ -43,7 +43,7 @@ def find_encroached(
 ) -> None:
     """Tell at which slots of boundary and marked edges the third corner lies inside the diametral circle."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b, c = links.slots[i] >> 32, links.slots[i] & _LOW
             encroached[i] = (links.kinds[i] == BOUNDARY or marks[edge_slot(links, v, b)] != 0) and diametral_adaptive(
                 k, points[v, 0], points[v, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]

@@ -57,7 +57,7 @@ def find_far_corners(links: Links, corners: IndexArray) -> None:
     """Write d for the triangle (b, v, d) beyond the edge of each row (v, b, c, d)."""
     for i in range(len(corners)):
         v, b = corners[i, 0], corners[i, 1]
-        corners[i, 3] = links.slots[slot_of(links.slots, links.first[b], links.first[b + 1], v)] & _LOW
+        corners[i, 3] = links.slots[slot_of(links.slots, links.first[b], links.last[b], v)] & _LOW
 
 
 @jit
