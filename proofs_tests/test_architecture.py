@@ -15,8 +15,10 @@ OUTER_ROOMS = (
     *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
     *("triangulate_file", "verify_file", "__main__"),
 )
-#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
-VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")
+#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of. The adapters, which turn objects
+#: into arrays, are asked for those of meshes alone, and know no algorithm either.
+VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors", "exactmesh.adapters")
+ADAPTERS_MAY = (*VERIFIER_MAY, "exactmesh.io")
 #: Where everything comes together.
 EXEMPT = ("exactmesh", *(f"exactmesh.{room}" for room in OUTER_ROOMS))
 
@@ -51,6 +53,9 @@ def forbidden(module: str, source: str) -> list[str]:
         elif is_within(module, "exactmesh.verify"):
             bad = is_within(name, "exactmesh") and not any(is_within(name, room) for room in VERIFIER_MAY)
             bad = bad and name != "exactmesh"
+        elif is_within(module, "exactmesh.adapters"):
+            bad = is_within(name, "exactmesh") and not any(is_within(name, room) for room in ADAPTERS_MAY)
+            bad = bad and name != "exactmesh"
         elif module == "exactmesh.errors":
             bad = is_within(name, "exactmesh") and not is_within(name, "exactmesh.verify")
         elif any(is_within(module, room) for room in EXEMPT[1:]) or module == "exactmesh":
@@ -81,6 +86,7 @@ class TestImportDirections:
             ("exactmesh.verify.mesh", "from exactmesh.lawson import flip"),
             ("exactmesh.verify.mesh", "from exactmesh.connectivity import neighbors_of"),
             ("exactmesh.verify.mesh", "from exactmesh import delaunay"),
+            ("exactmesh.adapters.own", "from exactmesh.delaunay import delaunay"),
             ("exactmesh.delaunay", "from exactmesh.io import files"),
             ("exactmesh.delaunay", "from exactmesh import plot"),
             ("exactmesh.quadedge", "import exactmesh.cli"),

@@ -12,6 +12,7 @@ from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, ar
 from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
+    AdapterError,
     BoundError,
     ChoiceError,
     ClipError,
@@ -28,6 +29,7 @@ from exactmesh.errors import (
     GeometryError,
     HypothesisUnavailableError,
     InadmissibleError,
+    MesherError,
     NonFiniteError,
     NotConformingError,
     NotDelaunayError,
@@ -64,6 +66,7 @@ __version__ = "0.1.0"
 __all__ = [
     "OUTSIDE",
     "PSLG",
+    "AdapterError",
     "Arrangement",
     "BoundError",
     "Carve",
@@ -87,6 +90,7 @@ __all__ = [
     "HypothesisUnavailableError",
     "InadmissibleError",
     "Meeting",
+    "MesherError",
     "NaturalNeighbors",
     "NonFiniteError",
     "NotConformingError",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "AdapterError",
     "BoundError",
     "ChoiceError",
     "ClipError",
@@ -41,6 +42,7 @@ __all__ = [
     "GeometryError",
     "HypothesisUnavailableError",
     "InadmissibleError",
+    "MesherError",
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
@@ -54,6 +56,10 @@ __all__ = [
     "TooManyPointsError",
     "TopologyError",
 ]
+
+
+class AdapterError(ExactMeshError):
+    """An object that is no mesh of triangles and quadrilaterals in the plane; ``indices`` are the culprits in it."""
 
 
 class ChoiceError(ExactMeshError):
@@ -142,6 +148,10 @@ class SnappingError(ExactMeshError):
 
 class TopologyError(ExactMeshError):
     """Indices that do not describe a triangulation, or an edge operation that the edge does not allow."""
+
+
+class MesherError(ExactMeshError):
+    """A mesher that cannot be put to the test: it cannot be found, imported or called in a process of its own."""
 
 
 class HypothesisUnavailableError(ExactMeshError, ImportError):

@@ -19,8 +19,10 @@
   incircle: not called
 """
 
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
+    ADMISSIBLE_MESH,
     CONFORMING_TRIANGULATION,
     CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
@@ -36,12 +38,14 @@ from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, Verifica
 from exactmesh.verify.verifier import verify
 
 __all__ = [
+    "ADMISSIBLE_MESH",
     "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
     "DOMAIN_TRIANGULATION",
     "FORMAT",
     "WITNESSES",
+    "CheckedMesh",
     "ChoiceError",
     "Domain",
     "Finding",

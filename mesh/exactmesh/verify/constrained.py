@@ -6,6 +6,7 @@ import numpy as np
 
 from exactkernel.types import FloatArray
 from exactmesh.verify.boundary import Boundary, is_one_loop
+from exactmesh.verify.cells import upright_cells
 from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, ODD, Marks, chained
 from exactmesh.verify.cover import Placed, Survey, check_cover, check_inner_parts, check_outer_parts, surveyed
 from exactmesh.verify.delaunay import check_circles, check_constrained
@@ -16,9 +17,9 @@ from exactmesh.verify.matching import corners_at
 from exactmesh.verify.mesh import Integers, Mesh
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.regions import check_labels, check_region_areas
-from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.triangles import Shapes, turned
-from exactmesh.verify.witness import IndexArray, finding_of, point_name
+from exactmesh.verify.witness import IndexArray, finding_of, joined, point_name
 
 __all__ = ["check_constraints", "stacked"]
 
@@ -91,11 +92,13 @@ def check_constraints(
     findings[Property.SEGMENTS_PRESENT] = segments
     enclosed = free[survey.unused_covered] if survey is not None else free[:0]
     missing = _missing_properties(boundary, segments)
-    if missing:
-        findings[Property.CONSTRAINED_DELAUNAY] = check_circles(mesh, shapes, missing)
-    else:
+    if Property.CONSTRAINED_DELAUNAY in decided:
         constrained = tiled.marks & CONSTRAINED > 0
-        findings[Property.CONSTRAINED_DELAUNAY] = check_constrained(mesh, shapes, links, constrained, enclosed)
+        findings[Property.CONSTRAINED_DELAUNAY] = (
+            check_circles(mesh, shapes, missing)
+            if missing
+            else check_constrained(mesh, shapes, links, constrained, enclosed)
+        )
     if constraints.labels is not None:
         findings[Property.REGIONS] = (
             Finding(Verdict.UNDECIDED, because=missing)
@@ -116,11 +119,11 @@ def _region_areas(tiled: Tiled, outline: Outline, positions: FloatArray) -> Find
 
 
 def _regions(tiled: Tiled, labels: FloatArray, outline: Outline | None, positions: FloatArray) -> Finding:
-    triangles = turned(tiled.mesh.triangles, tiled.shapes)
     r = 0 if outline is None else len(outline.regions)
     attributes = np.empty(0) if outline is None else outline.attributes
     seeds = positions[len(positions) - r :]
-    return check_labels(tiled.mesh, tiled.links, triangles, tiled.marks, labels, seeds, attributes)
+    cells = upright_cells(tiled.mesh, tiled.shapes)
+    return check_labels(tiled.mesh, tiled.links, cells, tiled.marks, labels, seeds, attributes)
 
 
 def _missing_properties(boundary: Boundary | None, segments: Finding) -> tuple[Property, ...]:
@@ -165,7 +168,7 @@ def _free(tiled: Tiled) -> IndexArray:
 
 
 def _used(links: Links) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    return links.first[1:] > links.first[:-1]
+    return links.last > links.first
 
 
 def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) -> Placed:
@@ -256,15 +259,9 @@ def _new_points(tiled: Tiled, placed: Placed) -> Finding:
 
 def _both(one: Finding, other: Finding) -> Finding:
     """Join two findings about one property: of the mesh's segments and of the domain's."""
-    findings = (one, other)
-    for verdict in (Verdict.FAILS, Verdict.UNDECIDED):
-        parts = [finding for finding in findings if finding.verdict is verdict]
-        if parts:
-            return Finding(
-                verdict,
-                sum(part.count for part in parts),
-                tuple(violation for part in parts for violation in part.violations)[:WITNESSES],
-                any(part.lower_bound for part in parts),
-                tuple(dict.fromkeys(property_ for part in parts for property_ in part.because)),
-            )
-    return one
+    findings = [one, other]
+    failing = [finding for finding in findings if finding.verdict is Verdict.FAILS]
+    if failing:
+        return joined(failing)
+    because = dict.fromkeys(property_ for finding in findings for property_ in finding.because)
+    return Finding(Verdict.UNDECIDED, because=tuple(because)) if because else one

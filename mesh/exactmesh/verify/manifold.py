@@ -24,22 +24,23 @@ def repeated_edges(mesh: Mesh, links: Links, property_: Property, kind: Kind, fa
     told = edges[:WITNESSES].tolist()
     triples = [[(v, b, c) for c in _third_corners(links, v, b)] for v, b in told]
     rows = iter(
-        rows_of_triangles(mesh.triangles, [corners for group in triples for corners in group], len(mesh.points))
+        rows_of_triangles(
+            mesh.triangles, [corners for group in triples for corners in group], len(mesh.points), mesh.quads
+        )
     )
     violations = []
     for (v, b), group in zip(told, triples, strict=True):
         found = tuple(sorted({row for _ in group for row in next(rows)}))
         name = f"the edge from {point_name(mesh.points, v)} to {point_name(mesh.points, b)}"
-        message = f"triangles {', '.join(map(str, found))} lie on one side of {name}: {fault}"
+        message = f"{mesh.noun}s {', '.join(map(str, found))} lie on one side of {name}: {fault}"
         violations.append(Violation(property_, kind, found, (v, b), message))
     return Finding(Verdict.FAILS, len(edges), tuple(violations))
 
 
 def _third_corners(links: Links, v: int, b: int) -> list[int]:
     """Return the different third corners of the triangles that list v -> b, the first few."""
-    begin, end = links.first[v], links.first[v + 1]
-    low, high = begin + np.searchsorted(links.slots[begin:end], [b << 32, (b + 1) << 32])
-    return list(dict.fromkeys((links.slots[low : min(high, low + WITNESSES)] & _LOW).tolist()))
+    bucket = links.slots[links.first[v] : links.last[v]]
+    return list(dict.fromkeys((bucket[bucket >> 32 == b][:WITNESSES] & _LOW).tolist()))
 
 
 def check_edges(mesh: Mesh, links: Links) -> Finding:
@@ -48,17 +49,16 @@ def check_edges(mesh: Mesh, links: Links) -> Finding:
 
 
 @jit
-def find_broken_fans(links: Links, v_begin: int, v_end: int, broken: npt.NDArray[np.bool_]) -> None:
+def find_broken_fans(links: Links, r_begin: int, r_end: int, broken: npt.NDArray[np.bool_]) -> None:
     """Walk round each vertex from where its triangles begin; all of them must be met.
 
     Without repeated edges each slot has at most one successor and one predecessor, so the walk cannot run in
     circles that miss its start. Two path starts, or a path and a cycle, are two fans.
     """
-    first, slots, kinds = links
-    for v in range(v_begin, v_end):
-        begin, end = first[v], first[v + 1]
+    slots, kinds = links.slots, links.kinds
+    for v in links.order[r_begin:r_end]:
+        begin, end = links.first[v], links.last[v]
         start, starts = begin, 0
-        broken[v] = False
         for i in range(begin, end):
             if kinds[i] == BOUNDARY:
                 start = i
@@ -74,14 +74,14 @@ def find_broken_fans(links: Links, v_begin: int, v_end: int, broken: npt.NDArray
             i = slot_of(slots, begin, end, slots[i] & _LOW) if met < end - begin else -1
             if i == start:
                 i = -1
-        broken[v] = begin < end and met < end - begin
+        broken[v] = met < end - begin
 
 
 def check_fans(mesh: Mesh, links: Links) -> Finding:
     """VERTEX_MANIFOLD by walking round every vertex. Linear time but for searching in the buckets."""
-    broken = np.empty(len(mesh.points), dtype=np.bool_)
-    for begin in range(0, len(broken), _CHUNK):
-        find_broken_fans(links, begin, min(begin + _CHUNK, len(broken)), broken)
+    broken = np.zeros(len(mesh.points), dtype=np.bool_)
+    for begin in range(0, len(links.order), _CHUNK):
+        find_broken_fans(links, begin, min(begin + _CHUNK, len(links.order)), broken)
     return fans_finding(mesh, np.flatnonzero(broken))
 
 
@@ -89,10 +89,10 @@ def fans_finding(mesh: Mesh, broken: IndexArray) -> Finding:
     """Return VERTEX_MANIFOLD, given the vertices round which the triangles do not form one fan."""
     if not broken.size:
         return Finding(Verdict.HOLDS)
-    rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points))
+    rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points), mesh.quads)
 
     def describe(v: int) -> Violation:
-        message = f"the triangles round {point_name(mesh.points, v)}, such as {rows[v]}, do not form one fan"
+        message = f"the {mesh.noun}s round {point_name(mesh.points, v)}, such as {rows[v]}, do not form one fan"
         return Violation(Property.VERTEX_MANIFOLD, Kind.BROKEN_FAN, rows[v], (v,), message)
 
     return finding_of(broken, describe)

@@ -7,6 +7,7 @@ from exactkernel.jit import jit
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.verify.adjacency import neighbours_of, parts_of, rows_of_slots
 from exactmesh.verify.bounds import check_areas
+from exactmesh.verify.cells import Cells
 from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, Marks
 from exactmesh.verify.faces import faces_of
 from exactmesh.verify.links import BOUNDARY, Links, ends_of, slot_of, slots_of
@@ -34,19 +35,19 @@ def differing(
     """Write the row across each inner edge, at the slot that stands for it, and whether the labels differ there
     although no segment does."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b = links.slots[i] >> 32
             across[i] = -1
             differ[i] = False
             if v < b and links.kinds[i] != BOUNDARY:
-                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+                across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
                 differ[i] = marks[i] & (CONSTRAINED | IN_DOMAIN) == 0 and labels[rows[i]] != labels[across[i]]
 
 
 def check_labels(
     mesh: Mesh,
     links: Links,
-    triangles: IntArray,
+    cells: Cells,
     marks: Marks,
     labels: npt.NDArray[np.float64],
     seeds: FloatArray,
@@ -56,15 +57,15 @@ def check_labels(
 
     Args:
         mesh: the points.
-        links, triangles: counterclockwise triangles, row by row those of the mesh.
+        links, cells: counterclockwise cells, row by row those of the mesh.
         marks: of their edges.
-        labels: (m,) their labels.
+        labels: (m + k,) their labels.
         seeds: (r, 2) points of regions in the coordinates of the mesh.
         attributes: (r,) what the labels should be.
 
     O(m), and O(s log s) for s edges on segments where there are seeds.
     """
-    rows, across = rows_of_slots(links, triangles), np.empty(len(links.slots), dtype=np.int32)
+    rows, across = rows_of_slots(links, *cells), np.empty(len(links.slots), dtype=np.int32)
     differ = np.empty(len(links.slots), dtype=np.bool_)
     for begin in range(0, len(mesh.points), _CHUNK):
         differing(links, marks, labels, rows, across, differ, begin, min(begin + _CHUNK, len(mesh.points)))
@@ -74,7 +75,7 @@ def check_labels(
         v, b, _ = (int(ends[0]) for ends in ends_of(links, np.array([slot])))
         s, t = int(rows[slot]), int(across[slot])
         message = (
-            f"triangles {s} and {t} have labels {labels[s]:g} and {labels[t]:g}, but no segment lies between them, "
+            f"{mesh.noun}s {s} and {t} have labels {labels[s]:g} and {labels[t]:g}, but no segment lies between them, "
             f"on the edge {point_name(mesh.points, v)} - {point_name(mesh.points, b)}"
         )
         return Violation(Property.REGIONS, Kind.LABELS_DIFFER, (s, t), (v, b), message)
@@ -115,9 +116,9 @@ def _seeds(
 
     def describe(i: int) -> Violation:
         seed, t = int(inside[i]), int(triangles[i])
-        corners = tuple(mesh.triangles[t].tolist())
+        corners = mesh.corners(t)
         message = (
-            f"region {seed} has attribute {attributes[seed]:g}, but triangle {t} in its face has label {labels[t]:g}"
+            f"region {seed} has attribute {attributes[seed]:g}, but {mesh.noun} {t} in its face has label {labels[t]:g}"
         )
         return Violation(Property.REGIONS, Kind.WRONG_LABEL, (t,), corners, message)
 
@@ -128,11 +129,11 @@ def _seeds(
 def fill_across(links: Links, rows: IntArray, across: IntArray, v_begin: int, v_end: int) -> None:
     """Write the row across each inner edge, at the slot of its smaller end."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b = links.slots[i] >> 32
             across[i] = -1
             if v < b and links.kinds[i] != BOUNDARY:
-                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+                across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
 
 
 def check_region_areas(

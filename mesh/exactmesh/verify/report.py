@@ -2,11 +2,12 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from exactkernel.errors import ExactMeshError
 from exactkernel.types import Sign, Stage
+from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
 
 __all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
@@ -17,6 +18,7 @@ WITNESSES = 100
 FORMAT = "exactmesh-report/1"
 
 _MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
+_ROUNDING_FAILS = "~"
 _UNCLAIMED_FAILS = "-"  # a fact, not a fault
 _WIDTH = 16  # of the column of names
 _SHOWN = 3  # violations of a property that str(report) prints
@@ -29,7 +31,7 @@ class Violation:
     Attributes:
         property: what is violated.
         kind: in which way.
-        triangles: rows of ``triangles`` that are involved.
+        triangles: rows of ``triangles`` that are involved; of quadrilaterals the row and the number of triangles.
         vertices: rows of ``points`` that are involved.
         message: one sentence with indices and coordinates.
         sign: the exact sign of the determinant that decided, where there is one.
@@ -71,10 +73,11 @@ class Finding:
     Attributes:
         verdict: HOLDS, FAILS or UNDECIDED.
         count: the number of violations, also of those beyond the first :data:`WITNESSES`.
-        violations: the witnesses.
+        violations: the witnesses, wrong ones first, and of those that can be measured the largest.
         lower_bound: True where ``count`` is what was found before the search stopped (an overlap ends the
             plane sweep).
         because: for UNDECIDED, the properties that would have to hold first.
+        rounding: how many of ``count`` are rounding-sized.
     """
 
     verdict: Verdict
@@ -82,6 +85,14 @@ class Finding:
     violations: tuple[Violation, ...] = ()
     lower_bound: bool = False
     because: tuple[Property, ...] = ()
+    rounding: int = 0
+
+    @property
+    def severity(self) -> Severity | None:
+        """WRONG if any violation is, ROUNDING if all of them are rounding-sized, None without violations."""
+        if not self.count:
+            return None
+        return Severity.ROUNDING if self.rounding == self.count else Severity.WRONG
 
     def to_dict(self) -> dict[str, object]:
         """Return what JSON can say."""
@@ -89,6 +100,7 @@ class Finding:
             "verdict": self.verdict.value,
             "count": self.count,
             "count_is_lower_bound": self.lower_bound,
+            "rounding": self.rounding,
             "because": [property_.value for property_ in self.because],
             "violations": [violation.to_dict() for violation in self.violations],
         }
@@ -110,8 +122,9 @@ class Report:
         findings: a :class:`Finding` for each :class:`Property`, claimed or not; but without segments, domain or labels
             none for what is about these.
         claims: the properties that were claimed.
-        point_count, triangle_count: the size of the input.
+        point_count, triangle_count, quad_count: the size of the input.
         stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
+        mesh: what was checked; two reports that say the same are equal whatever it is.
 
     >>> from exactmesh.verify import Property, verify
     >>> report = verify([(0, 0), (4, 0), (0, 3)], [(0, 2, 1)])
@@ -126,6 +139,8 @@ class Report:
     point_count: int
     triangle_count: int
     stages: Mapping[str, Mapping[Stage, int]]
+    mesh: CheckedMesh | None = field(default=None, compare=False)
+    quad_count: int = 0
 
     def __bool__(self) -> bool:
         """Tell whether every claimed property holds, so that ``assert verify(...)`` means what it says."""
@@ -133,7 +148,12 @@ class Report:
 
     def __repr__(self) -> str:
         verdicts = ", ".join(f"{claim} {self.verdict(claim)}" for claim in self.claims if not self._holds(claim))
-        return f"Report({self.point_count} points, {self.triangle_count} triangles, {verdicts or 'ok'})"
+        return f"Report({self._size}, {verdicts or 'ok'})"
+
+    @property
+    def _size(self) -> str:
+        quads = f", {self.quad_count} quadrilaterals" if self.quad_count else ""
+        return f"{self.point_count} points, {self.triangle_count} triangles{quads}"
 
     def _holds(self, claim: Property) -> bool:
         return self.findings[claim].verdict is Verdict.HOLDS
@@ -142,6 +162,26 @@ class Report:
     def ok(self) -> bool:
         """True if every claimed property holds."""
         return all(self._holds(claim) for claim in self.claims)
+
+    @property
+    def severity(self) -> Severity | None:
+        """How bad it is: None if every claim holds; ROUNDING if what the claims fail for, or wait for, is
+        rounding-sized only; WRONG otherwise."""
+        if self.ok:
+            return None
+        found = {severity for claim in self.claims for severity in self._severities(claim)}
+        return Severity.ROUNDING if found == {Severity.ROUNDING} else Severity.WRONG
+
+    def _severities(self, property_: Property) -> Iterator[Severity | None]:
+        """Yield the severity of a property that does not hold, or of those that it waits for."""
+        finding = self.findings.get(property_)
+        if finding is None or finding.verdict is Verdict.FAILS:
+            yield Severity.WRONG if finding is None else finding.severity
+        elif finding.verdict is Verdict.UNDECIDED:
+            if not finding.because:
+                yield Severity.WRONG
+            for awaited in finding.because:
+                yield from self._severities(awaited)
 
     @property
     def violations(self) -> tuple[Violation, ...]:
@@ -160,7 +200,7 @@ class Report:
             VerificationError: it carries this report.
         """
         if not self.ok:
-            broken = [claim for claim in self.claims if not self._holds(claim)]
+            broken = [claim for claim in self._worst_first() if claim in self.claims and not self._holds(claim)]
             summary = ", ".join(f"{claim} {self.verdict(claim)}" for claim in broken)
             witnesses = [self.findings[claim].violations for claim in broken]
             sentence = next((violations[0].message for violations in witnesses if violations), "no witness")
@@ -174,6 +214,7 @@ class Report:
             "ok": self.ok,
             "points": self.point_count,
             "triangles": self.triangle_count,
+            "quads": self.quad_count,
             "claims": [claim.value for claim in self.claims],
             "stages": {
                 predicate: {stage.name.lower(): count for stage, count in counts.items()}
@@ -186,14 +227,34 @@ class Report:
     def __str__(self) -> str:
         return "\n".join(self._lines())
 
+    def _worst_first(self) -> list[Property]:
+        """Return the properties in the order in which they are shown: claims that fail by something wrong, claims that
+        fail by something rounding-sized, undecided claims, and the rest."""
+
+        def rank(property_: Property) -> int:
+            finding = self.findings[property_]
+            if property_ not in self.claims or finding.verdict is Verdict.HOLDS:
+                return 3
+            if finding.verdict is Verdict.UNDECIDED:
+                return 2
+            return int(finding.severity is Severity.ROUNDING)
+
+        return sorted(self.findings, key=rank)
+
     def _lines(self) -> Iterator[str]:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
-        yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
+        if self.severity is Severity.ROUNDING:
+            outcome += ", by rounding-sized violations only"
+        yield f"{self._size}: {outcome}"
         width = max(_WIDTH, *map(len, self.findings))
-        for property_, finding in self.findings.items():
-            claimed = property_ in self.claims
+        for property_ in self._worst_first():
+            finding, claimed = self.findings[property_], property_ in self.claims
             fails = finding.verdict is Verdict.FAILS
-            mark = _UNCLAIMED_FAILS if fails and not claimed else _MARKS[finding.verdict]
+            mark = _MARKS[finding.verdict]
+            if fails and finding.severity is Severity.ROUNDING:
+                mark = _ROUNDING_FAILS
+            if fails and not claimed:
+                mark = _UNCLAIMED_FAILS
             yield f"  {mark} {property_:<{width}} {self._summary(property_, finding)}"
             if fails and not claimed:
                 continue
@@ -209,6 +270,9 @@ class Report:
         text = finding.verdict.value
         if finding.verdict is Verdict.FAILS:
             text += f", {'at least ' if finding.lower_bound else ''}{finding.count} found"
+            if finding.rounding:
+                share = "all" if finding.rounding == finding.count else f"{finding.rounding} of them"
+                text += f", {share} rounding-sized"
         if finding.because:
             text += f": {' and '.join(finding.because)} would have to hold"
         return text if property_ in self.claims else f"{text} (not claimed)"
