@@ -193,7 +193,7 @@ class TestBounds:
         exact = oracles.rationals(points)
         report = verify(points, triangles, min_angle=least, max_angle=most, max_area=area, orientation="any")
         bounded = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
-        found = {p: [v.triangles[0] for v in report.findings[p].violations] for p in bounded}
+        found = {p: sorted(v.triangles[0] for v in report.findings[p].violations) for p in bounded}
         solid = [oracles.orient(*(exact[v] for v in t)) != 0 for t in triangles]
         corners = [[exact[v] for v in t] for t in triangles]
         below = [i for i, c in enumerate(corners) if not solid[i] or shape_oracle.angle_below(c, least)]

@@ -39,6 +39,7 @@ __all__ = [
     "FaultKind",
     "FileFormatError",
     "GeometryError",
+    "HypothesisUnavailableError",
     "InadmissibleError",
     "NonFiniteError",
     "NotConformingError",
@@ -141,6 +142,10 @@ class SnappingError(ExactMeshError):
 
 class TopologyError(ExactMeshError):
     """Indices that do not describe a triangulation, or an edge operation that the edge does not allow."""
+
+
+class HypothesisUnavailableError(ExactMeshError, ImportError):
+    """hypothesis, which draws the inputs of :mod:`exactmesh.strategies`, is not installed."""
 
 
 class InadmissibleError(ExactMeshError):

@@ -20,7 +20,7 @@ def fill_rows(links: Links, triangles: IntArray, rows: IntArray, t_begin: int, t
     for t in range(t_begin, t_end):
         for i in range(3):
             v, b = triangles[t, i], triangles[t, (i + 1) % 3]
-            rows[slot_of(links.slots, links.first[v], links.first[v + 1], b)] = t
+            rows[slot_of(links.slots, links.first[v], links.last[v], b)] = t
 
 
 def rows_of_slots(links: Links, triangles: IntArray) -> IntArray:
@@ -40,7 +40,7 @@ def fill_neighbours(
     for t in range(begin, end):
         for i in range(3):
             v, b = triangles[t, i], triangles[t, (i + 1) % 3]
-            slot = slot_of(links.slots, links.first[b], links.first[b + 1], v)
+            slot = slot_of(links.slots, links.first[b], links.last[b], v)
             across[t, i] = -1
             if slot >= 0 and (bits == 0 or marks[edge_slot(links, v, b)] & bits == 0):
                 across[t, i] = rows[slot]

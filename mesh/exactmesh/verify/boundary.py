@@ -35,7 +35,9 @@ class Boundary(NamedTuple):
 def boundary_of(links: Links) -> Boundary:
     """Return the boundary chain of triangles without repeated edges. As a boundary it is closed: every vertex
     has as many edges in as out."""
-    return Boundary(*ends_of(links, slots_of(links, BOUNDARY)))
+    origin, target, apex = ends_of(links, slots_of(links, BOUNDARY))
+    order = np.argsort(origin, kind="stable")
+    return Boundary(origin[order], target[order], apex[order])
 
 
 @jit

@@ -8,19 +8,20 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.angle import AngleBound, angle_filter
-from exactkernel.constants import ORIENT2D_BOUND, SHAPE_FACTOR
+from exactkernel.angle import AngleBound
 from exactkernel.context import Context, chunk_size, make_context
 from exactkernel.errors import BoundError, ShapeError, shown
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.shape import angle_above_adaptive, angle_below_adaptive, angle_bound, area_above_adaptive
 from exactkernel.types import FloatArray, IntArray
+from exactmesh.verify.grading import rank_angles, rank_areas
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Severity
 from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.severity import MEASURE_BOUND, angle_severity, area_terms, severity_of
 from exactmesh.verify.triangles import Shapes
-from exactmesh.verify.witness import approximately, exact, finding_of, point_name, triangle_name, twice_area
+from exactmesh.verify.witness import approximately, exact, finding_of, joined, point_name, triangle_name, twice_area
 
 __all__ = ["Bounds", "bounds_of", "check_angle_bound", "check_areas"]
 
@@ -146,26 +147,30 @@ def check_angle_bound(
             find_above(k, bound, points, triangles[part], found)
 
     flat = shapes.orientation == 0
-    culprits = np.flatnonzero(_found(k, len(triangles), search) | flat)
+    culprits = np.flatnonzero(_found(k, len(triangles), search) & ~flat)
+
+    def without_angles(t: int) -> Violation:
+        corners = tuple(mesh.triangles[t].tolist())
+        message = f"triangle {t} = {triangle_name(mesh.points, corners)} has no area, hence no angles"
+        return Violation(property_, Kind.ZERO_AREA, (t,), corners, message)
 
     def describe(t: int) -> Violation:
         corners = tuple(mesh.triangles[t].tolist())
         name = f"triangle {t} = {triangle_name(mesh.points, corners)}"
-        if flat[t]:
-            return Violation(property_, Kind.ZERO_AREA, (t,), corners, f"{name} has no area, hence no angles")
         a, b, c = triangles[t].tolist()
         dots = [(_dot(mesh, *turn), turn) for turn in ((a, b, c), (b, c, a), (c, a, b))]
         dot, turn = max(dots) if least else min(dots)
         degrees = _degrees(twice_area(mesh.points, a, b, c), dot)
         kind, size = (Kind.SMALL_ANGLE, "less than") if least else (Kind.LARGE_ANGLE, "more than")
-        severity = _severity(mesh, bound, *turn)
+        severity = angle_severity(mesh.points, (a, b, c), bound, least=least)
         corner = point_name(mesh.points, turn[0])
         message = f"{name} has an angle of {degrees:.6g} degrees at {corner}, {size} {bound.degrees:g}"
         if severity is Severity.ROUNDING:
             message += ", rounding-sized"
         return Violation(property_, kind, (t,), corners, message, severity=severity, degrees=degrees)
 
-    return finding_of(culprits, describe)
+    ranking = rank_angles(mesh, triangles, culprits, bound, least=least)
+    return joined([finding_of(np.flatnonzero(flat), without_angles), finding_of(culprits, describe, ranking)])
 
 
 def _dot(mesh: Mesh, a: int, b: int, c: int) -> Fraction:
@@ -178,15 +183,6 @@ def _degrees(cross: Fraction, dot: Fraction) -> float:
     """Return the angle with these products of its sides, to be read."""
     largest = max(abs(cross), abs(dot))
     return math.degrees(math.atan2(float(cross / largest), float(dot / largest)))
-
-
-def _severity(mesh: Mesh, bound: AngleBound, a: int, b: int, c: int) -> Severity:
-    """Tell whether the filter for doubles resolves the angle at a."""
-    (ax, ay), (bx, by), (cx, cy) = (mesh.coordinates[v].tolist() for v in (a, b, c))
-    ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
-    crosses, dots = abs(ux * vy) + abs(uy * vx), abs(ux * vx) + abs(uy * vy)
-    sign = angle_filter(SHAPE_FACTOR * ORIENT2D_BOUND, bound, ux * vy - uy * vx, crosses, ux * vx + uy * vy, dots)
-    return Severity.WRONG if sign else Severity.ROUNDING
 
 
 def check_areas(mesh: Mesh, triangles: IntArray, limits: FloatArray, property_: Property) -> Finding:
@@ -203,20 +199,14 @@ def check_areas(mesh: Mesh, triangles: IntArray, limits: FloatArray, property_: 
     def describe(t: int) -> Violation:
         corners = tuple(mesh.triangles[t].tolist())
         magnitude = twice_area(mesh.points, *triangles[t].tolist())
-        excess, permanent = magnitude - 2 * Fraction(float(limits[t])), _permanent(mesh, *triangles[t].tolist())
-        resolved = excess > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) * (permanent + 2 * Fraction(float(limits[t])))
+        severity = severity_of(area_terms(mesh.points, triangles[t].tolist(), float(limits[t])), MEASURE_BOUND)
         message = (
             f"triangle {t} = {triangle_name(mesh.points, corners)} has an area of {approximately(magnitude / 2)}, "
             f"more than {float(limits[t]):g}"
         )
-        if not resolved:
+        if severity is Severity.ROUNDING:
             message += ", rounding-sized"
-        severity = Severity.WRONG if resolved else Severity.ROUNDING
         return Violation(property_, Kind.LARGE_AREA, (t,), corners, message, magnitude=magnitude, severity=severity)
 
-    return finding_of(np.flatnonzero(_found(k, len(triangles), search)), describe)
-
-
-def _permanent(mesh: Mesh, a: int, b: int, c: int) -> Fraction:
-    (ax, ay), (bx, by), (cx, cy) = exact(mesh.points, a), exact(mesh.points, b), exact(mesh.points, c)
-    return abs((bx - ax) * (cy - ay)) + abs((by - ay) * (cx - ax))
+    culprits = np.flatnonzero(_found(k, len(triangles), search))
+    return finding_of(culprits, describe, rank_areas(mesh.points, k, triangles, culprits, limits))

@@ -30,9 +30,9 @@ def edge_slot(links: Links, v: int, w: int) -> int:
     """Return the slot that stands for the edge between v and w, -1 if there is none: that of the edge from the smaller
     index, or else of its reverse."""
     low, high = min(v, w), max(v, w)
-    slot = slot_of(links.slots, links.first[low], links.first[low + 1], high)
+    slot = slot_of(links.slots, links.first[low], links.last[low], high)
     if slot < 0:
-        slot = slot_of(links.slots, links.first[high], links.first[high + 1], low)
+        slot = slot_of(links.slots, links.first[high], links.last[high], low)
     return slot
 
 
@@ -50,7 +50,7 @@ def next_of_chain(k: Context, points: FloatArray, links: Links, spokes: Spokes, 
     nearest = first_spoke(k, points, spokes, v, b)
     if nearest != -2:
         return nearest if nearest == b or (nearest >= 0 and lies_between(points, v, nearest, b)) else -1
-    for i in range(links.first[v], links.first[v + 1]):
+    for i in range(links.first[v], links.last[v]):
         for far in range(2):
             w = links.slots[i] & _LOW if far else links.slots[i] >> 32
             if w == b:

@@ -16,9 +16,9 @@ from exactmesh.verify.matching import corners_at
 from exactmesh.verify.mesh import Integers, Mesh
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.regions import check_labels, check_region_areas
-from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.triangles import Shapes, turned
-from exactmesh.verify.witness import IndexArray, finding_of, point_name
+from exactmesh.verify.witness import IndexArray, finding_of, joined, point_name
 
 __all__ = ["check_constraints", "stacked"]
 
@@ -165,7 +165,7 @@ def _free(tiled: Tiled) -> IndexArray:
 
 
 def _used(links: Links) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    return links.first[1:] > links.first[:-1]
+    return links.last > links.first
 
 
 def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) -> Placed:
@@ -256,15 +256,9 @@ def _new_points(tiled: Tiled, placed: Placed) -> Finding:
 
 def _both(one: Finding, other: Finding) -> Finding:
     """Join two findings about one property: of the mesh's segments and of the domain's."""
-    findings = (one, other)
-    for verdict in (Verdict.FAILS, Verdict.UNDECIDED):
-        parts = [finding for finding in findings if finding.verdict is verdict]
-        if parts:
-            return Finding(
-                verdict,
-                sum(part.count for part in parts),
-                tuple(violation for part in parts for violation in part.violations)[:WITNESSES],
-                any(part.lower_bound for part in parts),
-                tuple(dict.fromkeys(property_ for part in parts for property_ in part.because)),
-            )
-    return one
+    findings = [one, other]
+    failing = [finding for finding in findings if finding.verdict is Verdict.FAILS]
+    if failing:
+        return joined(failing)
+    because = dict.fromkeys(property_ for finding in findings for property_ in finding.because)
+    return Finding(Verdict.UNDECIDED, because=tuple(because)) if because else one

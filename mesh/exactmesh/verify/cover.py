@@ -24,8 +24,8 @@ from exactmesh.verify.links import BOUNDARY, Links, ends_of, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.planes import CROSSING, INNER, LOOSE, WHOLE, flatten, glue
 from exactmesh.verify.properties import Kind, Property, Verdict
-from exactmesh.verify.report import WITNESSES, Finding, Violation
-from exactmesh.verify.witness import IndexArray, finding_of, point_name
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.witness import IndexArray, finding_of, joined, point_name
 
 __all__ = ["Placed", "Survey", "check_cover", "check_inner_parts", "check_outer_parts", "surveyed"]
 
@@ -245,11 +245,7 @@ def check_cover(mesh: Mesh, links: Links, marks: Marks, placed: Placed, survey: 
         elif placed.outline.even_odd:
             even = boundary[marks[boundary] & ODD == 0]
             parts.append(finding_of(even, lambda slot: _even_boundary(mesh, links, slot)))
-    count = sum(part.count for part in parts)
-    if not count:
-        return Finding(Verdict.HOLDS)
-    told = tuple(violation for part in parts for violation in part.violations)[:WITNESSES]
-    return Finding(Verdict.FAILS, count, told, lower_bound=len(parts) == 1)
+    return joined(parts, lower_bound=len(parts) == 1)
 
 
 def _against_faces(mesh: Mesh, placed: Placed, survey: Survey) -> list[Finding]:

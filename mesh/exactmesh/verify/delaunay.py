@@ -5,16 +5,19 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from exactmesh.verify.links import NOT_DELAUNAY, Links, ends_of, slots_of
+from exactkernel.constants import INCIRCLE_BOUND
+from exactmesh.verify.grading import rank_circles
+from exactmesh.verify.links import NOT_DELAUNAY, Links, slots_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
-from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.severity import circle_terms, severity_of
 from exactmesh.verify.triangles import Shapes
 from exactmesh.verify.witness import (
     IndexArray,
     approximately,
     finding_of,
-    incircle_determinant,
+    joined,
     point_name,
     rows_of_triangles,
     sign_of,
@@ -100,10 +103,9 @@ def _finding(
         _edges(mesh, links, slots, property_),
         finding_of(enclosed, lambda v: _enclosed(mesh, v, property_)),
     ]
-    count = sum(part.count for part in parts)
-    if count:
-        told = tuple(violation for part in parts for violation in part.violations)
-        return Finding(Verdict.FAILS, count, told[:WITNESSES], lower_bound=bool(missing))
+    finding = joined(parts, lower_bound=bool(missing))
+    if finding.count:
+        return finding
     if missing and len(mesh.triangles):
         return Finding(Verdict.UNDECIDED, because=missing)
     return Finding(Verdict.HOLDS)
@@ -123,47 +125,25 @@ def _enclosed(mesh: Mesh, v: int, property_: Property) -> Violation:
 def _edges(mesh: Mesh, links: Links, slots: IndexArray, property_: Property) -> Finding:
     if not slots.size:
         return Finding(Verdict.HOLDS)
-    told = slots[:WITNESSES]
-    v, b, c = ends_of(links, told)
-    d = _far_corners(links, v, b)
-    near = np.stack([v, b, c], axis=1)
-    rows = rows_of_triangles(
-        mesh.triangles,
-        [*map(tuple, near.tolist()), *map(tuple, np.stack([b, v, d], axis=1).tolist())],
-        len(mesh.points),
-    )
+    corners, ranking = rank_circles(mesh, links, slots)
+    told = corners[ranking.order]
+    near, far = told[:, :3].tolist(), told[:, [1, 0, 3]].tolist()
+    rows = rows_of_triangles(mesh.triangles, [*map(tuple, near), *map(tuple, far)], len(mesh.points))
+    rows_of = {i: rows[j][:1] + rows[j + len(told)][:1] for j, i in enumerate(ranking.order.tolist())}
 
-    def describe(slot: int) -> Violation:
-        i = int(np.searchsorted(told, slot))
-        corners = near[i].tolist()
-        magnitude, severity = incircle_determinant(mesh.points, corners, int(d[i]))
-        triangles = rows[i][:1] + rows[i + len(told)][:1]
-        near_name, far_name = triangle_name(mesh.points, corners), point_name(mesh.points, int(d[i]))
+    def describe(i: int) -> Violation:
+        *near, far = corners[i].tolist()
+        terms = circle_terms(mesh.points, near, far)
+        magnitude, severity = terms[0], severity_of(terms, INCIRCLE_BOUND)
+        triangles = rows_of[i]
+        near_name, far_name = triangle_name(mesh.points, near), point_name(mesh.points, far)
         message = (
             f"vertex {far_name} of triangle {triangles[1]} lies inside the circumcircle of triangle "
             f"{triangles[0]} = {near_name}: incircle {approximately(magnitude)}"
         )
         if severity is Severity.ROUNDING:
             message += ", rounding-sized"
-        vertices = (*corners, int(d[i]))
-        return Violation(
-            property_,
-            Kind.POINT_IN_CIRCLE,
-            triangles,
-            vertices,
-            message,
-            sign_of(magnitude),
-            magnitude,
-            severity,
-        )
+        vertices, sign = (*near, far), sign_of(magnitude)
+        return Violation(property_, Kind.POINT_IN_CIRCLE, triangles, vertices, message, sign, magnitude, severity)
 
-    return finding_of(slots, describe)
-
-
-def _far_corners(links: Links, v: IndexArray, b: IndexArray) -> IndexArray:
-    """Return the third corners of the triangles (v, d, b)."""
-    far = np.empty_like(v)
-    for i, (origin, target) in enumerate(zip(v.tolist(), b.tolist(), strict=True)):
-        bucket = links.slots[links.first[origin] : links.first[origin + 1]]
-        far[i] = bucket[np.flatnonzero((bucket & 0xFFFFFFFF) == target)[0]] >> 32
-    return far
+    return finding_of(np.arange(len(corners)), describe, ranking)

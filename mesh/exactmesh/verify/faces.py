@@ -209,7 +209,7 @@ def _place_of_crossing(mesh: Mesh, links: Links, faces: Faces) -> tuple[FloatArr
     if Fraction(float(x)) != x or Fraction(float(y)) != y:
         return None
     point = np.array((float(x), float(y)))
-    corner = np.flatnonzero((mesh.coordinates == point).all(axis=1) & (links.first[1:] > links.first[:-1]))
+    corner = np.flatnonzero((mesh.coordinates == point).all(axis=1) & (links.last > links.first))
     if corner.size:
         return point, int(corner[0])
     end = (plane.points == point).all(axis=1) & (plane.node == 1)

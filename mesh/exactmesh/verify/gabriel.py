@@ -1,25 +1,28 @@
 """GABRIEL: the diametral circles of the boundary and of the segments, locally by the opposite corners."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from exactkernel.constants import ORIENT2D_BOUND
 from exactkernel.context import Context, chunk_size
-from exactkernel.diametral import diametral_adaptive, diametral_filter
+from exactkernel.diametral import diametral_adaptive
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
 from exactmesh.verify.chains import Marks, edge_slot
+from exactmesh.verify.grading import rank_diametral
 from exactmesh.verify.links import _LOW, BOUNDARY, NOT_DELAUNAY, Links, ends_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
-from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.severity import diametral_terms, severity_of
 from exactmesh.verify.witness import (
     approximately,
     finding_of,
     point_name,
     rows_of_triangles,
-    scalar_product,
     sign_of,
 )
 
@@ -40,7 +43,7 @@ def find_encroached(
 ) -> None:
     """Tell at which slots of boundary and marked edges the third corner lies inside the diametral circle."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b, c = links.slots[i] >> 32, links.slots[i] & _LOW
             encroached[i] = (links.kinds[i] == BOUNDARY or marks[edge_slot(links, v, b)] != 0) and diametral_adaptive(
                 k, points[v, 0], points[v, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]
@@ -81,15 +84,16 @@ def check_gabriel(mesh: Mesh, links: Links, marks: Marks, missing: tuple[Propert
     slots = np.flatnonzero(encroached)
     if not slots.size:
         return Finding(Verdict.UNDECIDED, because=missing) if missing else Finding(Verdict.HOLDS)
-    told = slots[:WITNESSES]
-    corners = np.stack(ends_of(links, told), axis=1)
-    rows = rows_of_triangles(mesh.triangles, [*map(tuple, corners.tolist())], len(mesh.points))
+    corners = np.stack(ends_of(links, slots), axis=1)
+    ranking = rank_diametral(mesh, corners)
+    found = rows_of_triangles(mesh.triangles, [*map(tuple, corners[ranking.order].tolist())], len(mesh.points))
+    rows = dict(zip(ranking.order.tolist(), found, strict=True))
 
-    def describe(slot: int) -> Violation:
-        i = int(np.searchsorted(told, slot))
+    def describe(i: int) -> Violation:
         v, b, c = corners[i].tolist()
-        magnitude, severity = scalar_product(mesh.points, v, b, c), _severity(mesh, v, b, c)
-        kind = "boundary edge" if links.kinds[slot] == BOUNDARY else "edge on a segment"
+        terms = diametral_terms(mesh.points, v, b, c)
+        magnitude, severity = terms[0], severity_of(terms, ORIENT2D_BOUND)
+        kind = "boundary edge" if links.kinds[slots[i]] == BOUNDARY else "edge on a segment"
         message = (
             f"vertex {point_name(mesh.points, c)} lies inside the diametral circle of the {kind} "
             f"{point_name(mesh.points, v)} - {point_name(mesh.points, b)}: diametral {approximately(magnitude)}"
@@ -100,10 +104,4 @@ def check_gabriel(mesh: Mesh, links: Links, marks: Marks, missing: tuple[Propert
             Property.GABRIEL, Kind.ENCROACHED, rows[i], (v, b, c), message, sign_of(magnitude), magnitude, severity
         )
 
-    finding = finding_of(slots, describe)
-    return Finding(finding.verdict, finding.count, finding.violations, lower_bound=bool(missing))
-
-
-def _severity(mesh: Mesh, v: int, b: int, c: int) -> Severity:
-    flat = mesh.coordinates[[v, b, c]].ravel().tolist()
-    return Severity.WRONG if diametral_filter(ORIENT2D_BOUND, *flat) else Severity.ROUNDING
+    return replace(finding_of(np.arange(len(slots)), describe, ranking), lower_bound=bool(missing))

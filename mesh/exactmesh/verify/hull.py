@@ -44,7 +44,7 @@ def check_distinct(points: FloatArray, first: IndexArray) -> Finding:
 
 def unused_points(links: Links) -> IndexArray:
     """Return the points that are no corner of a triangle."""
-    return np.flatnonzero(links.first[1:] == links.first[:-1])
+    return np.flatnonzero(links.last == links.first)
 
 
 def check_used(mesh: Mesh, unused: IndexArray) -> Finding:

@@ -37,9 +37,8 @@ def repeated_edges(mesh: Mesh, links: Links, property_: Property, kind: Kind, fa
 
 def _third_corners(links: Links, v: int, b: int) -> list[int]:
     """Return the different third corners of the triangles that list v -> b, the first few."""
-    begin, end = links.first[v], links.first[v + 1]
-    low, high = begin + np.searchsorted(links.slots[begin:end], [b << 32, (b + 1) << 32])
-    return list(dict.fromkeys((links.slots[low : min(high, low + WITNESSES)] & _LOW).tolist()))
+    bucket = links.slots[links.first[v] : links.last[v]]
+    return list(dict.fromkeys((bucket[bucket >> 32 == b][:WITNESSES] & _LOW).tolist()))
 
 
 def check_edges(mesh: Mesh, links: Links) -> Finding:
@@ -48,17 +47,16 @@ def check_edges(mesh: Mesh, links: Links) -> Finding:
 
 
 @jit
-def find_broken_fans(links: Links, v_begin: int, v_end: int, broken: npt.NDArray[np.bool_]) -> None:
+def find_broken_fans(links: Links, r_begin: int, r_end: int, broken: npt.NDArray[np.bool_]) -> None:
     """Walk round each vertex from where its triangles begin; all of them must be met.
 
     Without repeated edges each slot has at most one successor and one predecessor, so the walk cannot run in
     circles that miss its start. Two path starts, or a path and a cycle, are two fans.
     """
-    first, slots, kinds = links
-    for v in range(v_begin, v_end):
-        begin, end = first[v], first[v + 1]
+    slots, kinds = links.slots, links.kinds
+    for v in links.order[r_begin:r_end]:
+        begin, end = links.first[v], links.last[v]
         start, starts = begin, 0
-        broken[v] = False
         for i in range(begin, end):
             if kinds[i] == BOUNDARY:
                 start = i
@@ -74,14 +72,14 @@ def find_broken_fans(links: Links, v_begin: int, v_end: int, broken: npt.NDArray
             i = slot_of(slots, begin, end, slots[i] & _LOW) if met < end - begin else -1
             if i == start:
                 i = -1
-        broken[v] = begin < end and met < end - begin
+        broken[v] = met < end - begin
 
 
 def check_fans(mesh: Mesh, links: Links) -> Finding:
     """VERTEX_MANIFOLD by walking round every vertex. Linear time but for searching in the buckets."""
-    broken = np.empty(len(mesh.points), dtype=np.bool_)
-    for begin in range(0, len(broken), _CHUNK):
-        find_broken_fans(links, begin, min(begin + _CHUNK, len(broken)), broken)
+    broken = np.zeros(len(mesh.points), dtype=np.bool_)
+    for begin in range(0, len(links.order), _CHUNK):
+        find_broken_fans(links, begin, min(begin + _CHUNK, len(links.order)), broken)
     return fans_finding(mesh, np.flatnonzero(broken))
 
 

@@ -34,12 +34,12 @@ def differing(
     """Write the row across each inner edge, at the slot that stands for it, and whether the labels differ there
     although no segment does."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b = links.slots[i] >> 32
             across[i] = -1
             differ[i] = False
             if v < b and links.kinds[i] != BOUNDARY:
-                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+                across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
                 differ[i] = marks[i] & (CONSTRAINED | IN_DOMAIN) == 0 and labels[rows[i]] != labels[across[i]]
 
 
@@ -128,11 +128,11 @@ def _seeds(
 def fill_across(links: Links, rows: IntArray, across: IntArray, v_begin: int, v_end: int) -> None:
     """Write the row across each inner edge, at the slot of its smaller end."""
     for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.first[v + 1]):
+        for i in range(links.first[v], links.last[v]):
             b = links.slots[i] >> 32
             across[i] = -1
             if v < b and links.kinds[i] != BOUNDARY:
-                across[i] = rows[slot_of(links.slots, links.first[b], links.first[b + 1], v)]
+                across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
 
 
 def check_region_areas(

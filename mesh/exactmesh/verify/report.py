@@ -18,6 +18,7 @@ WITNESSES = 100
 FORMAT = "exactmesh-report/1"
 
 _MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
+_ROUNDING_FAILS = "~"
 _UNCLAIMED_FAILS = "-"  # a fact, not a fault
 _WIDTH = 16  # of the column of names
 _SHOWN = 3  # violations of a property that str(report) prints
@@ -72,10 +73,11 @@ class Finding:
     Attributes:
         verdict: HOLDS, FAILS or UNDECIDED.
         count: the number of violations, also of those beyond the first :data:`WITNESSES`.
-        violations: the witnesses.
+        violations: the witnesses, wrong ones first, and of those that can be measured the largest.
         lower_bound: True where ``count`` is what was found before the search stopped (an overlap ends the
             plane sweep).
         because: for UNDECIDED, the properties that would have to hold first.
+        rounding: how many of ``count`` are rounding-sized.
     """
 
     verdict: Verdict
@@ -83,6 +85,14 @@ class Finding:
     violations: tuple[Violation, ...] = ()
     lower_bound: bool = False
     because: tuple[Property, ...] = ()
+    rounding: int = 0
+
+    @property
+    def severity(self) -> Severity | None:
+        """WRONG if any violation is, ROUNDING if all of them are rounding-sized, None without violations."""
+        if not self.count:
+            return None
+        return Severity.ROUNDING if self.rounding == self.count else Severity.WRONG
 
     def to_dict(self) -> dict[str, object]:
         """Return what JSON can say."""
@@ -90,6 +100,7 @@ class Finding:
             "verdict": self.verdict.value,
             "count": self.count,
             "count_is_lower_bound": self.lower_bound,
+            "rounding": self.rounding,
             "because": [property_.value for property_ in self.because],
             "violations": [violation.to_dict() for violation in self.violations],
         }
@@ -147,6 +158,26 @@ class Report:
         return all(self._holds(claim) for claim in self.claims)
 
     @property
+    def severity(self) -> Severity | None:
+        """How bad it is: None if every claim holds; ROUNDING if what the claims fail for, or wait for, is
+        rounding-sized only; WRONG otherwise."""
+        if self.ok:
+            return None
+        found = {severity for claim in self.claims for severity in self._severities(claim)}
+        return Severity.ROUNDING if found == {Severity.ROUNDING} else Severity.WRONG
+
+    def _severities(self, property_: Property) -> Iterator[Severity | None]:
+        """Yield the severity of a property that does not hold, or of those that it waits for."""
+        finding = self.findings.get(property_)
+        if finding is None or finding.verdict is Verdict.FAILS:
+            yield Severity.WRONG if finding is None else finding.severity
+        elif finding.verdict is Verdict.UNDECIDED:
+            if not finding.because:
+                yield Severity.WRONG
+            for awaited in finding.because:
+                yield from self._severities(awaited)
+
+    @property
     def violations(self) -> tuple[Violation, ...]:
         """All witnesses, claimed properties or not, in the order of the properties."""
         return tuple(violation for finding in self.findings.values() for violation in finding.violations)
@@ -163,7 +194,7 @@ class Report:
             VerificationError: it carries this report.
         """
         if not self.ok:
-            broken = [claim for claim in self.claims if not self._holds(claim)]
+            broken = [claim for claim in self._worst_first() if claim in self.claims and not self._holds(claim)]
             summary = ", ".join(f"{claim} {self.verdict(claim)}" for claim in broken)
             witnesses = [self.findings[claim].violations for claim in broken]
             sentence = next((violations[0].message for violations in witnesses if violations), "no witness")
@@ -202,14 +233,34 @@ class Report:
     def __str__(self) -> str:
         return "\n".join(self._lines())
 
+    def _worst_first(self) -> list[Property]:
+        """Return the properties in the order in which they are shown: claims that fail by something wrong, claims that
+        fail by something rounding-sized, undecided claims, and the rest."""
+
+        def rank(property_: Property) -> int:
+            finding = self.findings[property_]
+            if property_ not in self.claims or finding.verdict is Verdict.HOLDS:
+                return 3
+            if finding.verdict is Verdict.UNDECIDED:
+                return 2
+            return int(finding.severity is Severity.ROUNDING)
+
+        return sorted(self.findings, key=rank)
+
     def _lines(self) -> Iterator[str]:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
+        if self.severity is Severity.ROUNDING:
+            outcome += ", by rounding-sized violations only"
         yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
         width = max(_WIDTH, *map(len, self.findings))
-        for property_, finding in self.findings.items():
-            claimed = property_ in self.claims
+        for property_ in self._worst_first():
+            finding, claimed = self.findings[property_], property_ in self.claims
             fails = finding.verdict is Verdict.FAILS
-            mark = _UNCLAIMED_FAILS if fails and not claimed else _MARKS[finding.verdict]
+            mark = _MARKS[finding.verdict]
+            if fails and finding.severity is Severity.ROUNDING:
+                mark = _ROUNDING_FAILS
+            if fails and not claimed:
+                mark = _UNCLAIMED_FAILS
             yield f"  {mark} {property_:<{width}} {self._summary(property_, finding)}"
             if fails and not claimed:
                 continue
@@ -225,6 +276,9 @@ class Report:
         text = finding.verdict.value
         if finding.verdict is Verdict.FAILS:
             text += f", {'at least ' if finding.lower_bound else ''}{finding.count} found"
+            if finding.rounding:
+                share = "all" if finding.rounding == finding.count else f"{finding.rounding} of them"
+                text += f", {share} rounding-sized"
         if finding.because:
             text += f": {' and '.join(finding.because)} would have to hold"
         return text if property_ in self.claims else f"{text} (not claimed)"

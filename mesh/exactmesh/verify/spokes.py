@@ -82,7 +82,7 @@ def sort_spokes(
 ) -> None:
     """Write the neighbours of v, each as often as it occurs, sorted."""
     end = begin
-    for i in range(links.first[v], links.first[v + 1]):
+    for i in range(links.first[v], links.last[v]):
         ends[end] = links.slots[i] >> 32
         ends[end + 1] = links.slots[i] & _LOW
         end += 2
@@ -119,7 +119,7 @@ def first_spoke(k: Context, points: FloatArray, spokes: Spokes, v: int, b: int) 
 
 def spokes_of(context: Context, points: FloatArray, links: Links) -> Spokes:
     """Sort the neighbours of all vertices of large degree. O(d log d) for degree d."""
-    degrees: npt.NDArray[np.int64] = np.diff(links.first)
+    degrees: npt.NDArray[np.int64] = links.last - links.first
     vertices = np.flatnonzero(degrees >= _LARGE)
     first = np.zeros(len(vertices) + 1, dtype=np.intp)
     np.cumsum(2 * degrees[vertices], out=first[1:])

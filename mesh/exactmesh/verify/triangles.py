@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from exactkernel.context import Context, chunk_size
-from exactkernel.diametral import diametral_adaptive
+from exactkernel.diametral import diametral, diametral_adaptive
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray, Sign, SignArray
+from exactmesh.verify.local import Local
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Orientation, Property
 from exactmesh.verify.report import Finding, Violation
@@ -61,20 +62,14 @@ def classify(k: Context, points: FloatArray, triangles: IntArray, orientation: S
         widest[t] = max(at_a, max(at_b, at_c))
 
 
-def classified(mesh: Mesh) -> Shapes:
+def classified(context: Context, local: Local) -> Shapes:
     """Return the signs of all triangles. O(m)."""
-    m = len(mesh.triangles)
+    m = len(local.triangles)
     shapes = Shapes(np.empty(m, dtype=np.int8), np.empty(m, dtype=np.int8))
-    step = chunk_size(mesh.context, CHUNK)
+    step = chunk_size(context, CHUNK)
     for start in range(0, m, step):
         part = slice(start, start + step)
-        classify(
-            mesh.context,
-            mesh.coordinates,
-            mesh.triangles[part],
-            shapes.orientation[part],
-            shapes.widest[part],
-        )
+        classify(context, local.points, local.triangles[part], shapes.orientation[part], shapes.widest[part])
         raise_if_interrupted()
     return shapes
 
@@ -107,6 +102,13 @@ def check_orientation(mesh: Mesh, shapes: Shapes, orientation: Orientation) -> F
     return finding_of(np.flatnonzero(wrong), describe)
 
 
+def _widest_last(mesh: Mesh, a: int, b: int, c: int) -> tuple[int, int, int]:
+    """Turn the corners so that the angle of 90 degrees or more comes last."""
+    at = {v: mesh.coordinates[v].tolist() for v in (a, b, c)}
+    turns = ((a, b, c), (b, c, a), (c, a, b))
+    return max(turns, key=lambda turn: diametral(*(at[v] for v in turn)))
+
+
 def check_angles(mesh: Mesh, shapes: Shapes, property_: Property) -> Finding:
     """WEAKLY_ACUTE or ACUTE: a violation for each triangle."""
     limit = Sign.ZERO if property_ is Property.WEAKLY_ACUTE else Sign.NEGATIVE
@@ -116,7 +118,8 @@ def check_angles(mesh: Mesh, shapes: Shapes, property_: Property) -> Finding:
         name = f"triangle {t} = {triangle_name(mesh.points, (a, b, c))}"
         if shapes.orientation[t] == 0:
             return Violation(property_, Kind.ZERO_AREA, (t,), (a, b, c), f"{name} has no area", Sign.ZERO)
-        magnitude, p = max((scalar_product(mesh.points, *turn), turn[2]) for turn in ((b, c, a), (c, a, b), (a, b, c)))
+        u, v, p = _widest_last(mesh, a, b, c)
+        magnitude = scalar_product(mesh.points, u, v, p)
         kind, size = (Kind.OBTUSE_ANGLE, "more than") if magnitude else (Kind.RIGHT_ANGLE, "exactly")
         message = f"{name} has an angle of {size} 90 degrees at {point_name(mesh.points, p)}"
         return Violation(property_, kind, (t,), (a, b, c), message, sign_of(magnitude), magnitude)

@@ -22,6 +22,7 @@ from exactmesh.verify.domain import Constraints, Domain, constraints_of
 from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
+from exactmesh.verify.local import Local, localized
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
 from exactmesh.verify.mesh import Mesh, check_finite, check_indices, index_triples, points_of, prepared_mesh
 from exactmesh.verify.properties import (
@@ -170,12 +171,13 @@ def check_mesh(
     decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide everything about finite points and valid triangles; ``positions`` are those of the domain."""
-    shapes = classified(mesh)
+    local = localized(mesh.coordinates, mesh.triangles)
+    shapes = classified(mesh.context, local)
     upright = turned(mesh.triangles, shapes)
     listed = upright if orientation is Orientation.ANY else mesh.triangles
     proper = upright[shapes.orientation > 0] if (shapes.orientation == 0).any() else upright
-    tiling = tiled(mesh, shapes, proper)
-    links = tiling.links if listed is proper else linked(mesh.coordinates, mesh.context, listed)
+    tiling = tiled(mesh, shapes, _links(mesh, proper, local))
+    links = tiling.links if listed is proper else _links(mesh, listed, local)
     unused = unused_points(links)
     findings = {
         Property.ORIENTATION: check_orientation(mesh, shapes, orientation),
@@ -230,10 +232,16 @@ def _missing_for_circles(links: Links, marks: Marks, findings: dict[Property, Fi
     return tuple(missing)
 
 
-def tiled(mesh: Mesh, shapes: Shapes, proper: IntArray) -> Tiling:
+def _links(mesh: Mesh, triangles: IntArray, local: Local) -> Links:
+    """Return the links of triangles; ``local`` is the copy of those that were listed."""
+    if triangles is not mesh.triangles:
+        local = localized(mesh.coordinates, triangles)
+    return linked(len(mesh.points), mesh.context, local)
+
+
+def tiled(mesh: Mesh, shapes: Shapes, links: Links) -> Tiling:
     """Decide ADMISSIBLE: triangles without area, then edges with two triangles on a side, then the
     boundary."""
-    links = linked(mesh.coordinates, mesh.context, proper)
     for finding in (check_zero_area(mesh, shapes), check_overlap(mesh, links)):
         if finding.verdict is Verdict.FAILS:
             return Tiling(links, replace(finding, lower_bound=True), None, None)
@@ -268,7 +276,7 @@ def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArr
         first = first_at_position(mesh.points)
         distinct = check_distinct(mesh.points, first)
         if not missing and len(mesh.triangles):
-            used = np.flatnonzero(tiling.links.first[1:] > tiling.links.first[:-1])
+            used = np.flatnonzero(tiling.links.last > tiling.links.first)
             enclosed = enclosed_points(unused, used, first)
     return {
         Property.DISTINCT_POINTS: distinct,

@@ -1,22 +1,24 @@
 """How witnesses are written: exact determinants in fractions, names with coordinates, rows of triangles."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.constants import INCIRCLE_BOUND
 from exactkernel.types import FloatArray, IntArray, Sign
 from exactmesh.verify.properties import Severity, Verdict
 from exactmesh.verify.report import WITNESSES, Finding, Violation
 
 __all__ = [
     "IndexArray",
+    "Ranking",
     "approximately",
+    "exact",
     "finding_of",
-    "incircle_determinant",
+    "joined",
     "point_name",
     "rows_at_vertices",
     "rows_of_triangles",
@@ -52,20 +54,6 @@ def scalar_product(points: FloatArray, a: int, b: int, p: int) -> Fraction:
     return (px - ax) * (bx - px) + (py - ay) * (by - py)
 
 
-def incircle_determinant(points: FloatArray, corners: Iterable[int], d: int) -> tuple[Fraction, Severity]:
-    """Return the incircle determinant, and whether the filter for doubles would have resolved it."""
-    dx, dy = exact(points, d)
-    rows = [(x - dx, y - dy) for x, y in (exact(points, v) for v in corners)]
-    determinant = permanent = Fraction(0)
-    for i in range(3):
-        (x, y), (px, py), (qx, qy) = rows[i], rows[(i + 1) % 3], rows[(i + 2) % 3]
-        lift = x * x + y * y
-        determinant += lift * (px * qy - py * qx)
-        permanent += lift * (abs(px * qy) + abs(py * qx))
-    resolved = abs(determinant) > Fraction(INCIRCLE_BOUND) * permanent
-    return determinant, Severity.WRONG if resolved else Severity.ROUNDING
-
-
 def approximately(value: Fraction) -> str:
     """Return three digits of a fraction, whatever its exponent."""
     return f"{Decimal(value.numerator) / Decimal(value.denominator):.3g}"
@@ -86,7 +74,8 @@ def rows_of_triangles(triangles: IntArray, wanted: Sequence[tuple[int, ...]], n:
     near = np.zeros(n, dtype=np.bool_)
     near[[v for corners in wanted for v in corners]] = True
     found: dict[frozenset[int], list[int]] = {frozenset(corners): [] for corners in wanted}
-    for row in np.flatnonzero(near[triangles].all(axis=1)):
+    candidates = np.flatnonzero(near[triangles[:, 0]])
+    for row in candidates[near[triangles[candidates, 1]] & near[triangles[candidates, 2]]]:
         rows = found.get(frozenset(triangles[row].tolist()))
         if rows is not None and len(rows) < _NAMED_ROWS:
             rows.append(int(row))
@@ -105,9 +94,35 @@ def rows_at_vertices(triangles: IntArray, vertices: IndexArray, n: int) -> dict[
     return rows
 
 
-def finding_of(culprits: IndexArray, describe: Callable[[int], Violation]) -> Finding:
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """In which order violations are told.
+
+    Attributes:
+        order: positions of the first :data:`WITNESSES` violations: the wrong ones, the largest first.
+        rounding: how many of all violations are rounding-sized.
+    """
+
+    order: IndexArray
+    rounding: int
+
+
+def finding_of(culprits: IndexArray, describe: Callable[[int], Violation], ranking: Ranking | None = None) -> Finding:
     """Return FAILS with a violation for each of the first culprits, HOLDS where there are none."""
     if not culprits.size:
         return Finding(Verdict.HOLDS)
-    told = tuple(describe(int(culprit)) for culprit in culprits[:WITNESSES])
-    return Finding(Verdict.FAILS, int(culprits.size), told)
+    told, rounding = (culprits[:WITNESSES], 0) if ranking is None else (culprits[ranking.order], ranking.rounding)
+    violations = tuple(describe(int(culprit)) for culprit in told)
+    return Finding(Verdict.FAILS, int(culprits.size), violations, rounding=rounding)
+
+
+def joined(parts: Sequence[Finding], *, lower_bound: bool = False) -> Finding:
+    """Return one finding about several sorts of violations: FAILS if there are any, what is wrong told first."""
+    told = [violation for part in parts for violation in part.violations]
+    told.sort(key=lambda violation: violation.severity is Severity.ROUNDING)
+    count = sum(part.count for part in parts)
+    if not count:
+        return Finding(Verdict.HOLDS)
+    lower_bound = lower_bound or any(part.lower_bound for part in parts)
+    rounding = sum(part.rounding for part in parts)
+    return Finding(Verdict.FAILS, count, tuple(told[:WITNESSES]), lower_bound, rounding=rounding)
