@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.types import FloatArray
 from exactmesh.verify import CheckedMesh
 from exactmesh.verify.mesh import Integers
+from exactmesh.verify.witness import IndexArray
 
 __all__ = ["Payload", "payload_of"]
 
@@ -75,7 +76,7 @@ def _exponent_of(coordinates: FloatArray) -> int:
     return exponent if abs(exponent) > _LARGEST_EXPONENT else 0
 
 
-def _indices(rows: Integers | IntArray, n: int) -> npt.NDArray[np.uint32]:
+def _indices(rows: Integers | IndexArray, n: int) -> npt.NDArray[np.uint32]:
     valid = (rows >= 0) & (rows < n)
     return np.where(valid, rows, _NOWHERE).astype(np.uint32)
 

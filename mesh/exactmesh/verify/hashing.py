@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.types import FloatArray
 
 if TYPE_CHECKING:
     from exactmesh.verify.domain import Outline
     from exactmesh.verify.mesh import Integers
+    from exactmesh.verify.witness import IndexArray
 
 __all__ = ["array_sha256", "domain_sha256", "mesh_sha256"]
 
@@ -38,12 +39,12 @@ def domain_sha256(outline: "Outline") -> str:
     )
 
 
-def array_sha256(array: "FloatArray | IntArray | Integers") -> str:
+def array_sha256(array: "FloatArray | IndexArray | Integers") -> str:
     """Return the name of one array of one or two dimensions: "exactmesh-array/1", then the array."""
     return _digest(b"exactmesh-array/1\n", array if array.ndim == 2 else array[:, None])
 
 
-def _digest(head: bytes, *arrays: "FloatArray | IntArray | Integers") -> str:
+def _digest(head: bytes, *arrays: "FloatArray | IndexArray | Integers") -> str:
     digest = hashlib.sha256(head)
     for array in arrays:
         digest.update(np.array(array.shape, dtype="<i8").tobytes())
@@ -52,7 +53,7 @@ def _digest(head: bytes, *arrays: "FloatArray | IntArray | Integers") -> str:
     return digest.hexdigest()
 
 
-def _canonical(array: "FloatArray | IntArray | Integers") -> Iterator[npt.NDArray[np.generic]]:
+def _canonical(array: "FloatArray | IndexArray | Integers") -> Iterator[npt.NDArray[np.generic]]:
     real = array.dtype.kind == "f"
     for start in range(0, len(array), _ROWS):
         part = np.array(array[start : start + _ROWS], dtype="<f8" if real else "<i8", order="C")
