@@ -15,8 +15,10 @@ OUTER_ROOMS = (
     *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
     *("html", "triangulate_file", "verify_file", "__main__"),
 )
-#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
-VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")
+#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of. The adapters, which turn objects
+#: into arrays, are asked for those of meshes alone, and know no algorithm either.
+VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors", "exactmesh.adapters")
+ADAPTERS_MAY = (*VERIFIER_MAY, "exactmesh.io")
 #: What a module may import within a function only: a report's page is made in a room of its own when it is asked for.
 LATER = {"exactmesh.verify.report": "exactmesh.html"}
 #: Where everything comes together.
@@ -60,6 +62,9 @@ def forbidden(module: str, source: str) -> list[str]:
         elif is_within(module, "exactmesh.verify"):
             bad = is_within(name, "exactmesh") and not any(is_within(name, room) for room in VERIFIER_MAY)
             bad = bad and name != "exactmesh"
+        elif is_within(module, "exactmesh.adapters"):
+            bad = is_within(name, "exactmesh") and not any(is_within(name, room) for room in ADAPTERS_MAY)
+            bad = bad and name != "exactmesh"
         elif module == "exactmesh.errors":
             bad = is_within(name, "exactmesh") and not is_within(name, "exactmesh.verify")
         elif any(is_within(module, room) for room in EXEMPT[1:]) or module == "exactmesh":
@@ -94,6 +99,7 @@ class TestImportDirections:
             ("exactmesh.verify.mesh", "from exactmesh import delaunay"),
             ("exactmesh.verify.report", "from exactmesh.html import page_of"),
             ("exactmesh.verify.mesh", "def f():\n    from exactmesh.html import page_of"),
+            ("exactmesh.adapters.own", "from exactmesh.delaunay import delaunay"),
             ("exactmesh.delaunay", "from exactmesh.io import files"),
             ("exactmesh.delaunay", "from exactmesh import plot"),
             ("exactmesh.quadedge", "import exactmesh.cli"),

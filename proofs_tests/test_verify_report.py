@@ -41,6 +41,7 @@ ABOUT_CONSTRAINTS = {*CONSTRAINED_TRIANGULATION, *DOMAIN_TRIANGULATION} - {*DELA
 }
 #: Nothing was bounded, and these were not claimed.
 NOT_ASKED = {
+    Property.CONVEX,
     Property.GABRIEL,
     Property.CIRCUMCENTRES_INSIDE,
     Property.MIN_ANGLE,

@@ -12,6 +12,7 @@ from exactmesh.crossings import Arrangement, Meeting, Rounding, SegmentPairs, ar
 from exactmesh.delaunay import delaunay
 from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
+    AdapterError,
     BoundError,
     ChoiceError,
     ClipError,
@@ -64,6 +65,7 @@ __version__ = "0.1.0"
 __all__ = [
     "OUTSIDE",
     "PSLG",
+    "AdapterError",
     "Arrangement",
     "BoundError",
     "Carve",

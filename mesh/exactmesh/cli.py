@@ -16,6 +16,7 @@ from exactmesh.cli_arguments import carve_rule, require_file
 from exactmesh.triangulate_command import triangulate
 
 if TYPE_CHECKING:
+    from exactmesh.adapters import GivenMesh
     from exactmesh.io import Mesh
     from exactmesh.pslg import PSLG
 
@@ -36,6 +37,9 @@ app = typer.Typer(
 )
 
 _Mesh = Annotated[str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly or .npz.")]
+_AnyMesh = Annotated[
+    str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly, .npz; or what meshio reads.")
+]
 
 
 def _print_version(wanted: bool) -> None:
@@ -60,7 +64,7 @@ app.command()(triangulate)
 
 @app.command()
 def verify(
-    mesh: _Mesh,
+    mesh: _AnyMesh,
     claim: Annotated[
         list[str] | None,
         typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all that fits."),
@@ -74,7 +78,10 @@ def verify(
     carve: Annotated[
         str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
     ] = None,
-    orientation: Annotated[str, typer.Option(metavar="ccw|any", help="How triangles may be listed.")] = "ccw",
+    orientation: Annotated[
+        str | None,
+        typer.Option(metavar="ccw|any", help="How cells may be listed; default: ccw, but any of formats of others."),
+    ] = None,
     min_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is smaller.")] = None,
     max_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is larger.")] = None,
     max_area: Annotated[float | None, typer.Option(metavar="AREA", help="Claim that no triangle is larger.")] = None,
@@ -102,10 +109,11 @@ def verify(
     from exactmesh.verify.chains import walk_chains
     from exactmesh.verify_file import Shapes, checked_against, checked_alone
 
-    content = _triangles_of(mesh)
+    content = _cells_of(mesh)
     graph = None if domain is None else _domain_of(domain, carve)
     bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel)
     needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
+    base = getattr(content, "base", 0)
     with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
         if graph is None:
             report, note = checked_alone(content, mesh, claim or None, orientation, bounds)
@@ -119,8 +127,8 @@ def verify(
     typer.echo(report.to_json() if json == "-" else str(report))
     if json != "-" and note:
         typer.echo(note)
-    if content.base and json != "-" and report.violations:
-        typer.echo(f"(Numbers in this report count from 0, those in the files from {content.base}.)")
+    if base and json != "-" and report.violations:
+        typer.echo(f"(Numbers in this report count from 0, those in the files from {base}.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 
@@ -136,12 +144,16 @@ def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
     return pslg if rule is None else pslg.with_rule(rule), base
 
 
-def _triangles_of(path: str) -> "Mesh":
+def _cells_of(path: str) -> "Mesh | GivenMesh":
+    """Return what is on file, as it is in a format of ours or Triangle's."""
+    from exactmesh.adapters.files import is_own_format, read_foreign
     from exactmesh.errors import FileFormatError
     from exactmesh.io import read_triangles
     from exactmesh.progress import working
 
     with working(f"reading {path}"):
+        if not is_own_format(path):
+            return read_foreign(path)
         mesh = read_triangles(path)
     if mesh.triangles is None:
         raise FileFormatError("there are no triangles on file, only points", path=path)

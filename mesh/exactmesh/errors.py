@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from exactmesh.verify import Report
 
 __all__ = [
+    "AdapterError",
     "BoundError",
     "ChoiceError",
     "ClipError",
@@ -54,6 +55,10 @@ __all__ = [
     "TooManyPointsError",
     "TopologyError",
 ]
+
+
+class AdapterError(ExactMeshError):
+    """An object that is no mesh of triangles and quadrilaterals in the plane; ``indices`` are the culprits in it."""
 
 
 class ChoiceError(ExactMeshError):

@@ -4,10 +4,12 @@ import os
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from exactmesh.adapters import GivenMesh
 from exactmesh.errors import PSLGError
 from exactmesh.io import Mesh
 from exactmesh.pslg import PSLG
 from exactmesh.verify import (
+    ADMISSIBLE_MESH,
     CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
     DOMAIN_TRIANGULATION,
@@ -44,9 +46,9 @@ def checked_against(
     domain: PSLG,
     base: int,
     path: str,
-    mesh: Mesh,
+    mesh: Mesh | GivenMesh,
     claims: Collection[str] | None,
-    orientation: str,
+    orientation: str | None,
     shapes: Shapes = _ANY_SHAPE,
 ) -> Report:
     """Verify the mesh as a triangulation of the domain that was read from ``path``, which counts from ``base``.
@@ -56,6 +58,11 @@ def checked_against(
     Raises:
         PSLGError: the domain has none; the message names the file.
     """
+    if isinstance(mesh, GivenMesh):
+        try:
+            return _checked_given(mesh, domain, claims, orientation, shapes)
+        except PSLGError as error:
+            raise PSLGError(error.faults, path=path, base=base) from None
     assert mesh.triangles is not None
     attributes = mesh.triangle_attributes if len(domain.regions) else None
     labels = None if attributes is None else attributes[:, -1]
@@ -75,7 +82,24 @@ def checked_against(
         raise PSLGError(error.faults, path=path, base=base) from None
 
 
-def _checked_hull(mesh: Mesh, claims: Collection[str] | None, orientation: str, shapes: Shapes) -> Report:
+def _checked_given(
+    mesh: GivenMesh, domain: PSLG | None, claims: Collection[str] | None, orientation: str | None, shapes: Shapes
+) -> Report:
+    """Verify the mesh of a format of others, as what it is by default and, if there is one, against a domain."""
+    covering = (Property.SEGMENTS_PRESENT, Property.COVERS_DOMAIN, Property.DOMAIN_POINTS)
+    default = ADMISSIBLE_MESH if domain is None else ADMISSIBLE_MESH + covering
+    return verify(
+        mesh,
+        domain=domain,
+        min_angle=shapes.min_angle,
+        max_angle=shapes.max_angle,
+        max_area=shapes.max_area,
+        claims=shapes.with_default(claims, default),
+        orientation=orientation,
+    )
+
+
+def _checked_hull(mesh: Mesh, claims: Collection[str] | None, orientation: str | None, shapes: Shapes) -> Report:
     assert mesh.triangles is not None
     default = DELAUNAY_TRIANGULATION if mesh.segments is None else CONSTRAINED_TRIANGULATION
     return verify(
@@ -91,13 +115,19 @@ def _checked_hull(mesh: Mesh, claims: Collection[str] | None, orientation: str, 
 
 
 def checked_alone(
-    mesh: Mesh, path: str, claims: Collection[str] | None, orientation: str, shapes: Shapes = _ANY_SHAPE
+    mesh: Mesh | GivenMesh,
+    path: str,
+    claims: Collection[str] | None,
+    orientation: str | None,
+    shapes: Shapes = _ANY_SHAPE,
 ) -> tuple[Report, str]:
     """Verify the mesh against its own segments and holes, or else against the hull; return a line that says which.
 
     The hull it is where there are no segments, where they describe no domain, and where the triangles do not cover that
     domain: what is written with ``--carve none`` covers the hull. What else is wrong is told of the domain.
     """
+    if isinstance(mesh, GivenMesh):
+        return _checked_given(mesh, None, claims, orientation, shapes), ""
     if mesh.segments is None or not len(mesh.segments):
         return _checked_hull(mesh, claims, orientation, shapes), ""
     place = _place_of_segments(path)

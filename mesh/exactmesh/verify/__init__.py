@@ -22,6 +22,7 @@
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
+    ADMISSIBLE_MESH,
     CONFORMING_TRIANGULATION,
     CONSTRAINED_TRIANGULATION,
     DELAUNAY_TRIANGULATION,
@@ -37,6 +38,7 @@ from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, Verifica
 from exactmesh.verify.verifier import verify
 
 __all__ = [
+    "ADMISSIBLE_MESH",
     "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",

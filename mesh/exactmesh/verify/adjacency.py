@@ -15,20 +15,22 @@ _CHUNK = 1 << 18  # triangles between two looks at Ctrl-C
 
 
 @jit
-def fill_rows(links: Links, triangles: IntArray, rows: IntArray, t_begin: int, t_end: int) -> None:
-    """Write the row of the triangle of each slot."""
+def fill_rows(links: Links, cells: IntArray, before: int, rows: IntArray, t_begin: int, t_end: int) -> None:
+    """Write the row of the cell of each slot; so many cells come before these."""
+    width = cells.shape[1]
     for t in range(t_begin, t_end):
-        for i in range(3):
-            v, b = triangles[t, i], triangles[t, (i + 1) % 3]
-            rows[slot_of(links.slots, links.first[v], links.last[v], b)] = t
+        for i in range(width):
+            v, b = cells[t, i], cells[t, (i + 1) % width]
+            rows[slot_of(links.slots, links.first[v], links.last[v], b)] = before + t
 
 
-def rows_of_slots(links: Links, triangles: IntArray) -> IntArray:
-    """Return int32 (3m,): the row of the triangle of each slot. O(m)."""
+def rows_of_slots(links: Links, triangles: IntArray, quads: IntArray | None = None) -> IntArray:
+    """Return int32 (3m + 4k,): the row of the cell of each slot. O(m + k)."""
     rows = np.empty(len(links.slots), dtype=np.int32)
-    for begin in range(0, len(triangles), _CHUNK):
-        fill_rows(links, triangles, rows, begin, min(begin + _CHUNK, len(triangles)))
-        raise_if_interrupted()
+    for before, cells in ((0, triangles), (len(triangles), triangles[:0] if quads is None else quads)):
+        for begin in range(0, len(cells), _CHUNK):
+            fill_rows(links, cells, before, rows, begin, min(begin + _CHUNK, len(cells)))
+            raise_if_interrupted()
     return rows
 
 

@@ -1,23 +1,25 @@
-"""ADMISSIBLE, decided exactly for every set of triangles, in linear time where the boundary is convex.
+"""ADMISSIBLE, decided exactly for every set of cells, in linear time where the boundary is convex.
 
-Let T be triangles with area, counterclockwise, no directed edge twice, and B the directed edges without a
-reverse.
+Let T be triangles with area and strictly convex quadrilaterals, counterclockwise, no directed edge twice, and B the
+directed edges without a reverse.
 
-1. For x on no edge, the number of triangles that contain x is the winding number of B around x: the
-   boundaries of the triangles sum to B, matched edges cancel.
+1. For x on no edge, the number of cells that contain x is the winding number of B around x: the
+   boundaries of the cells sum to B, matched edges cancel.
 2. Theorem. T is admissible iff (i) two edges of B meet only in vertices (indices) that they share, and (ii)
    every edge of B has winding number 1 on its left and 0 on its right. If T is admissible, two edges of B lie
-   in triangles that meet in a common corner or edge; that edge is matched, hence not in B, so the two meet in
+   in cells that meet in a common corner or edge; that edge is matched, hence not in B, so the two meet in
    one of its ends at most; and no point is covered twice. Conversely, every component of the complement of B
-   touches an edge of B, so by (ii) no x is covered twice. Suppose that p is common to two triangles s, t, but
-   not spanned by common corners. Their interiors are disjoint, so p is on the boundary of both. If p is
-   inside a matched edge of s, or at a corner of s round which the triangles close, then s and its neighbours
-   cover a neighbourhood of p; t has area near p, so t is one of them, and p is spanned by common corners
-   after all. So p lies on an edge of B on both sides, which (i) forbids.
+   touches an edge of B, so by (ii) no x is covered twice. Suppose that p is common to two cells s, t, but
+   is no common corner and on no common edge. Their interiors are disjoint, so p is on the boundary of both. If p is
+   inside a matched edge of s, or at a corner of s round which the cells close, then s and its neighbours
+   cover a neighbourhood of p; t has area near p, so t is one of them, and p is a common corner or on a common
+   edge after all. So p lies on an edge of B on both sides, which (i) forbids. Being convex with disjoint
+   interiors, s and t are separated by a line, which meets each of them, strictly convex as they are, in a
+   corner or an edge: they have nothing, one corner, or one edge in common.
 3. If B is one convex cycle, its interior has winding number 1 and the rest 0 (theorems A and C), hence (i)
    and (ii).
 
-Two triangles on one side of an edge overlap, so a directed edge that occurs twice is a violation. (i) implies
+Two cells on one side of an edge overlap, so a directed edge that occurs twice is a violation. (i) implies
 that no two vertices of B share a position; inner vertices cannot, by the neighbourhood argument: theorem B.
 """
 
@@ -74,7 +76,7 @@ def check_sweep(mesh: Mesh, boundary: Boundary) -> Finding:
     if fault == PROPER:
         return Finding(Verdict.HOLDS)
     edges = [tuple(int(ends[i]) for ends in boundary) for i in (e, f)]
-    rows = tuple(t for found in rows_of_triangles(mesh.triangles, edges, len(mesh.points)) for t in found)
+    rows = tuple(t for found in rows_of_triangles(mesh.triangles, edges, len(mesh.points), mesh.quads) for t in found)
     (a, b, _), (c, d, _) = edges
     if fault == IMPROPER:
         kind, sentence = _improper(mesh, (a, b), (c, d))

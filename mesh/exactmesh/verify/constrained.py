@@ -6,6 +6,7 @@ import numpy as np
 
 from exactkernel.types import FloatArray
 from exactmesh.verify.boundary import Boundary, is_one_loop
+from exactmesh.verify.cells import upright_cells
 from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, ODD, Marks, chained
 from exactmesh.verify.cover import Placed, Survey, check_cover, check_inner_parts, check_outer_parts, surveyed
 from exactmesh.verify.delaunay import check_circles, check_constrained
@@ -91,11 +92,13 @@ def check_constraints(
     findings[Property.SEGMENTS_PRESENT] = segments
     enclosed = free[survey.unused_covered] if survey is not None else free[:0]
     missing = _missing_properties(boundary, segments)
-    if missing:
-        findings[Property.CONSTRAINED_DELAUNAY] = check_circles(mesh, shapes, missing)
-    else:
+    if Property.CONSTRAINED_DELAUNAY in decided:
         constrained = tiled.marks & CONSTRAINED > 0
-        findings[Property.CONSTRAINED_DELAUNAY] = check_constrained(mesh, shapes, links, constrained, enclosed)
+        findings[Property.CONSTRAINED_DELAUNAY] = (
+            check_circles(mesh, shapes, missing)
+            if missing
+            else check_constrained(mesh, shapes, links, constrained, enclosed)
+        )
     if constraints.labels is not None:
         findings[Property.REGIONS] = (
             Finding(Verdict.UNDECIDED, because=missing)
@@ -116,11 +119,11 @@ def _region_areas(tiled: Tiled, outline: Outline, positions: FloatArray) -> Find
 
 
 def _regions(tiled: Tiled, labels: FloatArray, outline: Outline | None, positions: FloatArray) -> Finding:
-    triangles = turned(tiled.mesh.triangles, tiled.shapes)
     r = 0 if outline is None else len(outline.regions)
     attributes = np.empty(0) if outline is None else outline.attributes
     seeds = positions[len(positions) - r :]
-    return check_labels(tiled.mesh, tiled.links, triangles, tiled.marks, labels, seeds, attributes)
+    cells = upright_cells(tiled.mesh, tiled.shapes)
+    return check_labels(tiled.mesh, tiled.links, cells, tiled.marks, labels, seeds, attributes)
 
 
 def _missing_properties(boundary: Boundary | None, segments: Finding) -> tuple[Property, ...]:

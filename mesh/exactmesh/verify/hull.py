@@ -51,7 +51,7 @@ def check_used(mesh: Mesh, unused: IndexArray) -> Finding:
     """ALL_POINTS_USED."""
 
     def describe(v: int) -> Violation:
-        message = f"point {point_name(mesh.points, v)} is no corner of any triangle"
+        message = f"point {point_name(mesh.points, v)} is no corner of any {mesh.noun}"
         return Violation(Property.ALL_POINTS_USED, Kind.UNUSED_POINT, (), (v,), message)
 
     return finding_of(unused, describe)
@@ -64,13 +64,13 @@ def check_hull(mesh: Mesh, boundary: Boundary, cycle: IndexArray | None, unused:
     edge of the boundary has the union on its left side only, so where the union is convex, these edges tile
     its boundary, and being admissible they meet in common vertices.
     """
-    if not len(mesh.triangles):
+    if not mesh.size:
         return _hull_of_nothing(mesh)
     if cycle is None:
         return _not_convex(mesh, boundary)
 
     def describe(v: int) -> Violation:
-        message = f"point {point_name(mesh.points, v)} lies outside of all triangles"
+        message = f"point {point_name(mesh.points, v)} lies outside of all {mesh.noun}s"
         return Violation(Property.COVERS_HULL, Kind.POINT_OUTSIDE, (), (v,), message)
 
     return finding_of(outside_of(mesh, cycle, unused), describe)
@@ -86,7 +86,7 @@ def _hull_of_nothing(mesh: Mesh) -> Finding:
     if not turns.size:
         return Finding(Verdict.HOLDS)
     corners = (low, high, int(turns[0]))
-    message = f"no triangle covers the points {', '.join(point_name(mesh.points, v) for v in corners)}"
+    message = f"no {mesh.noun} covers the points {', '.join(point_name(mesh.points, v) for v in corners)}"
     return Finding(
         Verdict.FAILS,
         1,
@@ -106,8 +106,8 @@ def _not_convex(mesh: Mesh, boundary: Boundary) -> Finding:
     reflex = np.flatnonzero(turns < 0)
     if not reflex.size:
         corners = (int(origin[0]), int(target[0]), int(apex[0]))
-        rows = rows_of_triangles(mesh.triangles, [corners], len(mesh.points))[0]
-        message = f"the union is in several parts; one begins at triangle {rows[0]}, {_pair(mesh, *corners[:2])}"
+        rows = rows_of_triangles(mesh.triangles, [corners], len(mesh.points), mesh.quads)[0]
+        message = f"the union is in several parts; one begins at {mesh.noun} {rows[0]}, {_pair(mesh, *corners[:2])}"
         violation = Violation(Property.COVERS_HULL, Kind.DISCONNECTED, rows, corners[:2], message)
         return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
 

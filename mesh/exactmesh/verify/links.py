@@ -1,10 +1,11 @@
 """The links of the vertices: for each vertex, the directed edges opposite to it. Combinatorics and local
 Delaunay in one.
 
-The directed edge v -> b has one slot for each triangle (v, b, c) that lists it, in the bucket of v. The triangle on the
-other side of the edge (v, b) is the slot of v whose c is this b; a table over all points tells where in the bucket that
-is, read back before it is trusted, so that it need not be cleared between vertices. No hash, and no sort but of large
-buckets, which others search, and of those with an edge that occurs twice. Linear time for bounded degrees.
+The directed edge v -> b has one slot for each triangle (v, b, c) that lists it, in the bucket of v; for a quadrilateral
+(v, b, x, c) it is the same. The cell on the other side of the edge (v, b) is the slot of v whose c is this b; a table
+over all points tells where in the bucket that is, read back before it is trusted, so that it need not be cleared
+between vertices. No hash, and no sort but of large buckets, which others search, and of those with an edge that occurs
+twice. Linear time for bounded degrees.
 """
 
 from typing import NamedTuple
@@ -54,8 +55,8 @@ class Links(NamedTuple):
         first, last: int64 (n,): the slots of v are first[v] .. last[v] - 1.
         order: int32 (k,): the corners in the order of their buckets.
         starts: int64 (k,): where these begin.
-        slots: int64 (3m,): b * 2^32 + c; ascending within a vertex that has 64 or more, or a repeated edge.
-        kinds: int8 (3m,): INNER, BOUNDARY, ...
+        slots: int64 (3m + 4k,): b * 2^32 + c; ascending within a vertex that has 64 or more, or a repeated edge.
+        kinds: int8 (3m + 4k,): INNER, BOUNDARY, ...
     """
 
     first: LongArray
@@ -98,6 +99,24 @@ def fill_slots(triangles: IntArray, first: LongArray, slots: LongArray) -> None:
         slots[first[b]] = (c << 32) | a
         first[c] -= 1
         slots[first[c]] = (a << 32) | b
+
+
+@jit
+def count_quad_corners(quads: IntArray, degrees: LongArray) -> None:
+    """Count the quadrilaterals at each vertex."""
+    for q in range(len(quads)):
+        for i in range(4):
+            degrees[quads[q, i]] += 1
+
+
+@jit
+def fill_quad_slots(quads: IntArray, first: LongArray, slots: LongArray) -> None:
+    """Go on filling each bucket from its end."""
+    for q in range(len(quads)):
+        for i in range(4):
+            v, b, c = quads[q, i], np.int64(quads[q, (i + 1) & 3]), np.int64(quads[q, (i + 3) & 3])
+            first[v] -= 1
+            slots[first[v]] = (b << 32) | c
 
 
 @jit
@@ -167,8 +186,10 @@ def match_slots(
     v_begin: int,
     v_end: int,
 ) -> None:
-    """Tell the kinds of the slots of some vertices, all of which are BOUNDARY yet. Vertices have local numbers."""
+    """Tell the kinds of the slots of some vertices, all of which are BOUNDARY yet. Vertices have local numbers. With
+    quadrilaterals none is NOT_DELAUNAY."""
     points, order = local.points, local.order
+    circles = len(local.quads) == 0
     place, near = table
     for v in range(v_begin, v_end):
         begin, end = first[v], first[v + 1]
@@ -183,7 +204,7 @@ def match_slots(
                 kinds[j] = CROWDED
                 continue
             kinds[j] = INNER
-            if order[v] < order[b] and (j + 1 == end or kinds[j + 1] != REPEATED):
+            if circles and order[v] < order[b] and (j + 1 == end or kinds[j + 1] != REPEATED):
                 c = slots[j] & _LOW
                 far = begin + place[c]
                 cx, cy = near[place[c], 0], near[place[c], 1]
@@ -206,13 +227,15 @@ def name_slots(order: IntArray, slots: LongArray) -> None:
 def linked(n: int, context: Context, local: Local) -> Links:
     """Return the links of all n vertices. Linear time but for sorting the buckets of vertices of large degree, and of
     those with repeated edges."""
-    corners, m = len(local.order), len(local.triangles)
+    corners, size = len(local.order), local.triangles.size + local.quads.size
     first = np.zeros(corners + 1, dtype=np.int64)
     count_corners(local.triangles, first)
+    count_quad_corners(local.quads, first)
     most, large = int(first.max()), np.flatnonzero(first >= _LARGE)
     np.cumsum(first, out=first)
-    slots, kinds = np.empty(3 * m, dtype=np.int64), np.full(3 * m, BOUNDARY, dtype=np.int8)
+    slots, kinds = np.empty(size, dtype=np.int64), np.full(size, BOUNDARY, dtype=np.int8)
     fill_slots(local.triangles, first, slots)
+    fill_quad_slots(local.quads, first, slots)
     for v in large:
         bucket = slots[first[v] : first[v + 1]]
         bucket[:] = bucket[np.argsort(local.order[bucket >> 32], kind="stable")]

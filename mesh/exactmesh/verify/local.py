@@ -21,20 +21,21 @@ class Local(NamedTuple):
         order: int32 (k,): the point that each corner is.
         points: float64 (k, 2): the corners.
         triangles: int32 (m, 3): the triangles, in local numbers.
+        quads: int32 (k, 4): the quadrilaterals.
     """
 
     order: IntArray
     points: FloatArray
     triangles: IntArray
+    quads: IntArray
 
 
 @jit
-def number_corners(triangles: IntArray, number: IntArray, order: IntArray, local: IntArray) -> int:
-    """Number the corners as they come; return how many there are."""
-    corners = 0
-    for t in range(len(triangles)):
-        for i in range(3):
-            v = triangles[t, i]
+def number_corners(cells: IntArray, number: IntArray, order: IntArray, local: IntArray, corners: int) -> int:
+    """Number the corners as they come, from ``corners`` on; return how many there are."""
+    for t in range(len(cells)):
+        for i in range(cells.shape[1]):
+            v = cells[t, i]
             if number[v] < 0:
                 number[v] = corners
                 order[corners] = v
@@ -51,12 +52,14 @@ def gather(points: FloatArray, order: IntArray, gathered: FloatArray) -> None:
         gathered[i, 1] = points[order[i], 1]
 
 
-def localized(points: FloatArray, triangles: IntArray) -> Local:
+def localized(points: FloatArray, triangles: IntArray, quads: IntArray) -> Local:
     """Return the local copy. O(n + m)."""
-    order = np.empty(min(len(points), 3 * len(triangles)), dtype=np.int32)
-    local = np.empty((len(triangles), 3), dtype=np.int32)
-    corners = number_corners(triangles, np.full(len(points), -1, dtype=np.int32), order, local)
+    order = np.empty(min(len(points), triangles.size + quads.size), dtype=np.int32)
+    local, local_quads = np.empty(triangles.shape, dtype=np.int32), np.empty(quads.shape, dtype=np.int32)
+    number, corners = np.full(len(points), -1, dtype=np.int32), 0
+    for cells, numbered in ((triangles, local), (quads, local_quads)):
+        corners = number_corners(cells, number, order, numbered, corners)
     order = order[:corners]
     gathered = np.empty((corners, 2))
     gather(points, order, gathered)
-    return Local(order, gathered, local)
+    return Local(order, gathered, local, local_quads)

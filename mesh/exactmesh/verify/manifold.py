@@ -24,13 +24,15 @@ def repeated_edges(mesh: Mesh, links: Links, property_: Property, kind: Kind, fa
     told = edges[:WITNESSES].tolist()
     triples = [[(v, b, c) for c in _third_corners(links, v, b)] for v, b in told]
     rows = iter(
-        rows_of_triangles(mesh.triangles, [corners for group in triples for corners in group], len(mesh.points))
+        rows_of_triangles(
+            mesh.triangles, [corners for group in triples for corners in group], len(mesh.points), mesh.quads
+        )
     )
     violations = []
     for (v, b), group in zip(told, triples, strict=True):
         found = tuple(sorted({row for _ in group for row in next(rows)}))
         name = f"the edge from {point_name(mesh.points, v)} to {point_name(mesh.points, b)}"
-        message = f"triangles {', '.join(map(str, found))} lie on one side of {name}: {fault}"
+        message = f"{mesh.noun}s {', '.join(map(str, found))} lie on one side of {name}: {fault}"
         violations.append(Violation(property_, kind, found, (v, b), message))
     return Finding(Verdict.FAILS, len(edges), tuple(violations))
 
@@ -87,10 +89,10 @@ def fans_finding(mesh: Mesh, broken: IndexArray) -> Finding:
     """Return VERTEX_MANIFOLD, given the vertices round which the triangles do not form one fan."""
     if not broken.size:
         return Finding(Verdict.HOLDS)
-    rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points))
+    rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points), mesh.quads)
 
     def describe(v: int) -> Violation:
-        message = f"the triangles round {point_name(mesh.points, v)}, such as {rows[v]}, do not form one fan"
+        message = f"the {mesh.noun}s round {point_name(mesh.points, v)}, such as {rows[v]}, do not form one fan"
         return Violation(Property.VERTEX_MANIFOLD, Kind.BROKEN_FAN, rows[v], (v,), message)
 
     return finding_of(broken, describe)

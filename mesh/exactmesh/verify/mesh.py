@@ -19,6 +19,7 @@ __all__ = [
     "check_finite",
     "check_indices",
     "index_pairs",
+    "index_quads",
     "index_triples",
     "points_of",
     "prepared_mesh",
@@ -31,27 +32,46 @@ _MAX_POINTS = 2**31  # indices are packed in pairs into 62 bits
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """Finite points and valid triangles.
+    """Finite points and valid cells: triangles, quadrilaterals, or both. Rows of cells count triangles first.
 
     Attributes:
         points: float64 (n, 2) as given, for witnesses.
         coordinates: the same, times a power of two where that brings them into the window of the predicates.
         context: for predicates on ``coordinates``.
         triangles: int32 (m, 3) as listed.
+        quads: int32 (k, 4) as listed.
     """
 
     points: FloatArray
     coordinates: FloatArray
     context: Context
     triangles: IntArray
+    quads: IntArray
+
+    @property
+    def size(self) -> int:
+        """The number of cells."""
+        return len(self.triangles) + len(self.quads)
+
+    @property
+    def noun(self) -> str:
+        """What messages call a cell."""
+        return "cell" if len(self.quads) else "triangle"
+
+    def corners(self, row: int) -> tuple[int, ...]:
+        """Return the corners of a cell."""
+        m = len(self.triangles)
+        return tuple((self.triangles[row] if row < m else self.quads[row - m]).tolist())
 
 
-def prepared_mesh(points: FloatArray, triangles: Integers, others: FloatArray) -> tuple[Mesh, FloatArray]:
+def prepared_mesh(
+    points: FloatArray, triangles: Integers, quads: Integers, others: FloatArray
+) -> tuple[Mesh, FloatArray]:
     """Return the mesh of finite points and valid indices, and other points that its context is for as well."""
     together = np.concatenate([points, others]) if len(others) else points
     coordinates, context = scaled_into_window(together)
-    mesh = Mesh(points, coordinates[: len(points)], context, np.ascontiguousarray(triangles, dtype=np.int32))
-    return mesh, coordinates[len(points) :]
+    cells = (np.ascontiguousarray(rows, dtype=np.int32) for rows in (triangles, quads))
+    return Mesh(points, coordinates[: len(points)], context, *cells), coordinates[len(points) :]
 
 
 def points_of(points: npt.ArrayLike) -> FloatArray:
@@ -74,6 +94,15 @@ def index_triples(triangles: npt.ArrayLike) -> Integers:
         ShapeError: another shape, or a dtype that is not integer.
     """
     return _index_rows(triangles, "triangles", "m", 3)
+
+
+def index_quads(quads: npt.ArrayLike) -> Integers:
+    """Return the quadrilaterals as an integer array (k, 4); an empty list is none.
+
+    Raises:
+        ShapeError: another shape, or a dtype that is not integer.
+    """
+    return _index_rows(quads, "quads", "k", 4)
 
 
 def index_pairs(segments: npt.ArrayLike, name: str = "segments") -> Integers:
@@ -110,21 +139,34 @@ def check_finite(points: FloatArray) -> Finding:
     )
 
 
-def check_indices(triangles: Integers, n: int) -> Finding:
-    """INDICES. O(m)."""
-    a, b, c = triangles.T
-    repeated = (a == b) | (b == c) | (c == a)
-    outside = np.zeros(len(triangles), dtype=np.bool_)
-    if len(triangles) and (int(triangles.min()) < 0 or int(triangles.max()) >= n):
-        for corner in (a, b, c):
+def _faults_of_indices(rows: Integers, n: int) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Tell which rows have an index out of range, and which repeat one."""
+    outside, repeated = np.zeros((2, len(rows)), dtype=np.bool_)
+    corners = rows.T
+    for i in range(len(corners)):
+        for j in range(i):
+            repeated |= corners[i] == corners[j]
+    if len(rows) and (int(rows.min()) < 0 or int(rows.max()) >= n):
+        for corner in corners:
             outside |= (corner < 0) | (corner >= n)
+    return outside, repeated
+
+
+def check_indices(triangles: Integers, quads: Integers, n: int) -> Finding:
+    """INDICES. O(m)."""
+    outside, repeated = (
+        np.concatenate(masks)
+        for masks in zip(_faults_of_indices(triangles, n), _faults_of_indices(quads, n), strict=True)
+    )
+    m = len(triangles)
 
     def describe(t: int) -> Violation:
-        corners = tuple(int(v) for v in triangles[t])
+        corners = tuple(int(v) for v in (triangles[t] if t < m else quads[t - m]))
+        name = f"triangle {t}" if t < m else f"cell {t}, the quadrilateral"
         if outside[t]:
             kind, sentence = Kind.OUT_OF_RANGE, f"has an index outside 0 .. {n - 1}"
         else:
             kind, sentence = Kind.REPEATED_CORNER, "repeats a corner"
-        return Violation(Property.INDICES, kind, (t,), corners, f"triangle {t} {corners} {sentence}")
+        return Violation(Property.INDICES, kind, (t,), corners, f"{name} {corners} {sentence}")
 
     return finding_of(np.flatnonzero(repeated | outside), describe)

@@ -3,6 +3,9 @@ decide it.
 
 Points p_0 .. p_(n-1) and a list of triangles, each a triple of indices. A triangle is the closed set of
 points that its three corners span; an edge of it is directed so that the corners keep their order.
+
+There may be quadrilaterals besides, four indices each, in the order of their sides. Where a property speaks of
+triangles, it is then said of all cells, numbered triangles first; what is said of triangles only is not decided.
 """
 
 from collections.abc import Collection
@@ -11,6 +14,7 @@ from enum import StrEnum
 from exactmesh.errors import ChoiceError
 
 __all__ = [
+    "ADMISSIBLE_MESH",
     "CONFORMING_TRIANGULATION",
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
@@ -41,7 +45,9 @@ class Property(StrEnum):
     """No two points have the same position."""
     ORIENTATION = "orientation"
     """Every triangle is listed counterclockwise; with ``Orientation.ANY`` clockwise will do. Zero area never
-    does."""
+    does. A quadrilateral has to be a simple polygon with its interior on the left (with ``ANY``, on one side)."""
+    CONVEX = "convex"
+    """Every quadrilateral is strictly convex: its four corners are left turns, or all of them right turns."""
     ALL_POINTS_USED = "all_points_used"
     """Every point is a corner of some triangle (by index: an unused duplicate counts as unused)."""
     EDGE_MANIFOLD = "edge_manifold"
@@ -52,10 +58,10 @@ class Property(StrEnum):
     """Around every used vertex v the triangles form one fan: the directed edges opposite v form one simple
     path or one simple cycle. Combinatorial in the same sense; it implies EDGE_MANIFOLD."""
     ADMISSIBLE = "admissible"
-    """Every triangle has an area, and any two triangles of the list meet in nothing, in one corner of both,
-    or in one edge of both; corners and edges are compared by index. So no overlap, no repeated triangle, no
-    hanging node, no corners at the same position under two indices. The order in which corners are listed
-    does not matter."""
+    """Every triangle has an area, every quadrilateral is strictly convex, and any two cells of the list meet in
+    nothing, in one corner of both, or in one edge of both; corners and edges are compared by index. So no overlap, no
+    repeated triangle, no hanging node, no corners at the same position under two indices. Whether corners are listed
+    clockwise does not matter."""
     COVERS_HULL = "covers_hull"
     """The union of the triangles is the convex hull of all points (of collinear points, whose hull has no
     area: nothing). UNDECIDED without ADMISSIBLE: whether overlapping triangles cover a region is
@@ -110,7 +116,11 @@ class Property(StrEnum):
 
 
 #: The default claims: a Delaunay triangulation of all the points.
-DELAUNAY_TRIANGULATION: tuple[Property, ...] = tuple(Property)[: tuple(Property).index(Property.DELAUNAY) + 1]
+DELAUNAY_TRIANGULATION: tuple[Property, ...] = tuple(
+    property_
+    for property_ in tuple(Property)[: tuple(Property).index(Property.DELAUNAY) + 1]
+    if property_ is not Property.CONVEX
+)
 
 
 class Verdict(StrEnum):
@@ -156,6 +166,9 @@ class Kind(StrEnum):
     HANGING_NODE = "hanging_node"
     REFLEX_BOUNDARY = "reflex_boundary"
     DISCONNECTED = "disconnected"
+    REFLEX_CORNER = "reflex_corner"
+    STRAIGHT_CORNER = "straight_corner"
+    NOT_SIMPLE = "not_simple"
     POINT_OUTSIDE = "point_outside"
     NOT_COVERED = "not_covered"
     POINT_IN_CIRCLE = "point_in_circle"
@@ -205,11 +218,42 @@ CONFORMING_TRIANGULATION: tuple[Property, ...] = (
     Property.CIRCUMCENTRES_INSIDE,
 )
 
+#: The claims of any mesh of finite elements: cells that meet as the definition of admissibility says. The union may be
+#: any set, and points that no cell uses may be listed, at whatever position. By default, with quadrilaterals CONVEX is
+#: claimed besides, with segments SEGMENTS_PRESENT, with a domain COVERS_DOMAIN and DOMAIN_POINTS.
+ADMISSIBLE_MESH: tuple[Property, ...] = (
+    Property.FINITE,
+    Property.INDICES,
+    Property.ORIENTATION,
+    Property.EDGE_MANIFOLD,
+    Property.ADMISSIBLE,
+)
+
+#: What has a meaning for quadrilaterals as well.
+_OF_CELLS = (
+    Property.FINITE,
+    Property.INDICES,
+    Property.DISTINCT_POINTS,
+    Property.ORIENTATION,
+    Property.CONVEX,
+    Property.ALL_POINTS_USED,
+    Property.EDGE_MANIFOLD,
+    Property.VERTEX_MANIFOLD,
+    Property.ADMISSIBLE,
+    Property.COVERS_HULL,
+    Property.SEGMENTS_PRESENT,
+    Property.COVERS_DOMAIN,
+    Property.DOMAIN_POINTS,
+    Property.NO_NEW_POINTS,
+    Property.REGIONS,
+)
+
 #: What is decided only if it is claimed: it takes time, or says nothing of most meshes.
 _ON_CLAIM = (Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE, Property.REGION_AREAS)
 
 #: What each property needs besides points and triangles.
 _NEEDS = {
+    Property.CONVEX: "quadrilaterals",
     Property.SEGMENTS_PRESENT: "segments or a domain",
     Property.CONSTRAINED_DELAUNAY: "segments or a domain",
     Property.COVERS_DOMAIN: "a domain",
@@ -226,21 +270,41 @@ _BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
 
 
 def asked_properties(
-    *, segments: bool, domain: bool, labels: bool, bounds: Collection[Property] = ()
+    *, segments: bool, domain: bool, labels: bool, bounds: Collection[Property] = (), quads: bool = False
 ) -> tuple[Property, ...]:
-    """Return the properties that can be decided with what was given."""
+    """Return the properties that can be decided with what was given.
+
+    Raises:
+        ChoiceError: there are bounds on triangles, but quadrilaterals as well.
+    """
+    if quads and bounds:
+        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is a bound on triangles, and there are quadrilaterals")
     given = {
+        "quadrilaterals": quads,
         "segments or a domain": segments or domain,
         "a domain": domain,
         "labels, and segments or a domain": labels and (segments or domain),
         **{_NEEDS[property_]: property_ in bounds for property_ in _BOUNDS},
     }
-    return tuple(property_ for property_ in Property if property_ not in _NEEDS or given[_NEEDS[property_]])
+    return tuple(
+        property_
+        for property_ in Property
+        if (property_ not in _NEEDS or given[_NEEDS[property_]]) and (not quads or property_ in _OF_CELLS)
+    )
 
 
-def default_claims(asked: tuple[Property, ...]) -> tuple[Property, ...]:
-    """Return what is claimed if nothing else is said: of what was asked, what :func:`verify` promises."""
-    if Property.COVERS_DOMAIN in asked:
+def default_claims(asked: tuple[Property, ...], usual: tuple[Property, ...] | None = None) -> tuple[Property, ...]:
+    """Return what is claimed if nothing else is said: of what was asked, what :func:`verify` promises.
+
+    Args:
+        asked: what can be decided.
+        usual: what is claimed of a mesh of this sort; that of quadrilaterals is ADMISSIBLE_MESH.
+    """
+    if usual is not None or Property.CONVEX in asked:
+        besides = (Property.SEGMENTS_PRESENT, Property.COVERS_DOMAIN, Property.DOMAIN_POINTS, Property.CONVEX)
+        claims = ADMISSIBLE_MESH if usual is None else usual
+        claims += tuple(property_ for property_ in besides if property_ in asked)
+    elif Property.COVERS_DOMAIN in asked:
         claims = DOMAIN_TRIANGULATION
     elif Property.SEGMENTS_PRESENT in asked:
         claims = CONSTRAINED_TRIANGULATION
@@ -250,9 +314,12 @@ def default_claims(asked: tuple[Property, ...]) -> tuple[Property, ...]:
 
 
 def claimed_properties(
-    claims: Collection[Property | str] | None, asked: tuple[Property, ...] = tuple(Property)
+    claims: Collection[Property | str] | None,
+    asked: tuple[Property, ...] = tuple(Property),
+    usual: tuple[Property, ...] | None = None,
 ) -> tuple[Property, ...]:
-    """Return the claims in the order of the enum; None stands for what the given things are expected to be.
+    """Return the claims in the order of the enum; None stands for what the given things are expected to be, which
+    ``usual`` says of meshes of some sorts.
 
     In names "-" stands for "_".
 
@@ -260,7 +327,7 @@ def claimed_properties(
         ChoiceError: a claim is no property, or needs what was not given, or there is none.
     """
     if claims is None:
-        return default_claims(asked)
+        return tuple(property_ for property_ in Property if property_ in default_claims(asked, usual))
     try:
         claims = (claims,) if isinstance(claims, str) else tuple(claims)
     except TypeError:
@@ -272,7 +339,9 @@ def claimed_properties(
         if name not in tuple(Property):
             raise ChoiceError(f"{claim!r} is no property; choose from {', '.join(Property)}")
         if name not in asked:
-            raise ChoiceError(f"{name} cannot be claimed without {_NEEDS[Property(name)]}")
+            on_quads = Property.CONVEX in asked and name not in _OF_CELLS
+            why_not = "of quadrilaterals" if on_quads else f"without {_NEEDS[Property(name)]}"
+            raise ChoiceError(f"{name} cannot be claimed {why_not}")
     bounds = tuple(property_ for property_ in _BOUNDS if property_ in asked)
     return tuple(property_ for property_ in Property if property_ in named or property_ in bounds)
 

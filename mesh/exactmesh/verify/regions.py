@@ -7,6 +7,7 @@ from exactkernel.jit import jit
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.verify.adjacency import neighbours_of, parts_of, rows_of_slots
 from exactmesh.verify.bounds import check_areas
+from exactmesh.verify.cells import Cells
 from exactmesh.verify.chains import CONSTRAINED, IN_DOMAIN, Marks
 from exactmesh.verify.faces import faces_of
 from exactmesh.verify.links import BOUNDARY, Links, ends_of, slot_of, slots_of
@@ -46,7 +47,7 @@ def differing(
 def check_labels(
     mesh: Mesh,
     links: Links,
-    triangles: IntArray,
+    cells: Cells,
     marks: Marks,
     labels: npt.NDArray[np.float64],
     seeds: FloatArray,
@@ -56,15 +57,15 @@ def check_labels(
 
     Args:
         mesh: the points.
-        links, triangles: counterclockwise triangles, row by row those of the mesh.
+        links, cells: counterclockwise cells, row by row those of the mesh.
         marks: of their edges.
-        labels: (m,) their labels.
+        labels: (m + k,) their labels.
         seeds: (r, 2) points of regions in the coordinates of the mesh.
         attributes: (r,) what the labels should be.
 
     O(m), and O(s log s) for s edges on segments where there are seeds.
     """
-    rows, across = rows_of_slots(links, triangles), np.empty(len(links.slots), dtype=np.int32)
+    rows, across = rows_of_slots(links, *cells), np.empty(len(links.slots), dtype=np.int32)
     differ = np.empty(len(links.slots), dtype=np.bool_)
     for begin in range(0, len(mesh.points), _CHUNK):
         differing(links, marks, labels, rows, across, differ, begin, min(begin + _CHUNK, len(mesh.points)))
@@ -74,7 +75,7 @@ def check_labels(
         v, b, _ = (int(ends[0]) for ends in ends_of(links, np.array([slot])))
         s, t = int(rows[slot]), int(across[slot])
         message = (
-            f"triangles {s} and {t} have labels {labels[s]:g} and {labels[t]:g}, but no segment lies between them, "
+            f"{mesh.noun}s {s} and {t} have labels {labels[s]:g} and {labels[t]:g}, but no segment lies between them, "
             f"on the edge {point_name(mesh.points, v)} - {point_name(mesh.points, b)}"
         )
         return Violation(Property.REGIONS, Kind.LABELS_DIFFER, (s, t), (v, b), message)
@@ -115,9 +116,9 @@ def _seeds(
 
     def describe(i: int) -> Violation:
         seed, t = int(inside[i]), int(triangles[i])
-        corners = tuple(mesh.triangles[t].tolist())
+        corners = mesh.corners(t)
         message = (
-            f"region {seed} has attribute {attributes[seed]:g}, but triangle {t} in its face has label {labels[t]:g}"
+            f"region {seed} has attribute {attributes[seed]:g}, but {mesh.noun} {t} in its face has label {labels[t]:g}"
         )
         return Violation(Property.REGIONS, Kind.WRONG_LABEL, (t,), corners, message)
 

@@ -31,7 +31,7 @@ class Violation:
     Attributes:
         property: what is violated.
         kind: in which way.
-        triangles: rows of ``triangles`` that are involved.
+        triangles: rows of ``triangles`` that are involved; of quadrilaterals the row and the number of triangles.
         vertices: rows of ``points`` that are involved.
         message: one sentence with indices and coordinates.
         sign: the exact sign of the determinant that decided, where there is one.
@@ -122,7 +122,7 @@ class Report:
         findings: a :class:`Finding` for each :class:`Property`, claimed or not; but without segments, domain or labels
             none for what is about these.
         claims: the properties that were claimed.
-        point_count, triangle_count: the size of the input.
+        point_count, triangle_count, quad_count: the size of the input.
         stages: how many calls of "orient2d" (diametral included) and "incircle" each exact stage decided.
         mesh: what was checked; two reports that say the same are equal whatever it is.
 
@@ -140,6 +140,7 @@ class Report:
     triangle_count: int
     stages: Mapping[str, Mapping[Stage, int]]
     mesh: CheckedMesh | None = field(default=None, compare=False)
+    quad_count: int = 0
 
     def __bool__(self) -> bool:
         """Tell whether every claimed property holds, so that ``assert verify(...)`` means what it says."""
@@ -147,7 +148,12 @@ class Report:
 
     def __repr__(self) -> str:
         verdicts = ", ".join(f"{claim} {self.verdict(claim)}" for claim in self.claims if not self._holds(claim))
-        return f"Report({self.point_count} points, {self.triangle_count} triangles, {verdicts or 'ok'})"
+        return f"Report({self._size}, {verdicts or 'ok'})"
+
+    @property
+    def _size(self) -> str:
+        quads = f", {self.quad_count} quadrilaterals" if self.quad_count else ""
+        return f"{self.point_count} points, {self.triangle_count} triangles{quads}"
 
     def _holds(self, claim: Property) -> bool:
         return self.findings[claim].verdict is Verdict.HOLDS
@@ -208,6 +214,7 @@ class Report:
             "ok": self.ok,
             "points": self.point_count,
             "triangles": self.triangle_count,
+            "quads": self.quad_count,
             "claims": [claim.value for claim in self.claims],
             "stages": {
                 predicate: {stage.name.lower(): count for stage, count in counts.items()}
@@ -251,7 +258,7 @@ class Report:
         outcome = "every claim holds" if self.ok else "NOT what it claims to be"
         if self.severity is Severity.ROUNDING:
             outcome += ", by rounding-sized violations only"
-        yield f"{self.point_count} points, {self.triangle_count} triangles: {outcome}"
+        yield f"{self._size}: {outcome}"
         width = max(_WIDTH, *map(len, self.findings))
         for property_ in self._worst_first():
             finding, claimed = self.findings[property_], property_ in self.claims

@@ -30,15 +30,17 @@ CHUNK = 1 << 17  # compiled code cannot be interrupted: Ctrl-C waits for this ma
 
 
 class Shapes(NamedTuple):
-    """Two signs a triangle.
+    """Two signs a triangle, four a quadrilateral.
 
     Attributes:
         orientation: int8 (m,): orient2d of the corners.
         widest: int8 (m,): the widest angle: -1 below 90 degrees, 0 a right angle, 1 above.
+        turns: int8 (k, 4): the turn at each corner of a quadrilateral.
     """
 
     orientation: SignArray
     widest: SignArray
+    turns: SignArray
 
 
 @jit
@@ -62,10 +64,10 @@ def classify(k: Context, points: FloatArray, triangles: IntArray, orientation: S
         widest[t] = max(at_a, max(at_b, at_c))
 
 
-def classified(context: Context, local: Local) -> Shapes:
-    """Return the signs of all triangles. O(m)."""
+def classified(context: Context, local: Local, turns: SignArray) -> Shapes:
+    """Return the signs of all triangles, with those of quadrilaterals. O(m)."""
     m = len(local.triangles)
-    shapes = Shapes(np.empty(m, dtype=np.int8), np.empty(m, dtype=np.int8))
+    shapes = Shapes(np.empty(m, dtype=np.int8), np.empty(m, dtype=np.int8), turns)
     step = chunk_size(context, CHUNK)
     for start in range(0, m, step):
         part = slice(start, start + step)

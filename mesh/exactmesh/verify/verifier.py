@@ -4,6 +4,7 @@ from __future__ import annotations  # help() shows ArrayLike, not all that it st
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from typing import NamedTuple, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,14 @@ from exactkernel.types import FloatArray, IntArray, Stage
 from exactmesh.verify.admissible import check_overlap, check_sweep, check_zero_area
 from exactmesh.verify.boundary import Boundary, boundary_of, convex_cycle
 from exactmesh.verify.bounds import Bounds, bounds_of, check_angle_bound, check_areas
+from exactmesh.verify.cells import (
+    Cells,
+    check_convex,
+    check_quad_orientation,
+    proper_cells,
+    turns_of,
+    upright_cells,
+)
 from exactmesh.verify.centres import check_centres
 from exactmesh.verify.chains import Marks
 from exactmesh.verify.checked import CheckedMesh
@@ -24,7 +33,15 @@ from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_
 from exactmesh.verify.links import Links, linked
 from exactmesh.verify.local import Local, localized
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
-from exactmesh.verify.mesh import Mesh, check_finite, check_indices, index_triples, points_of, prepared_mesh
+from exactmesh.verify.mesh import (
+    Mesh,
+    check_finite,
+    check_indices,
+    index_quads,
+    index_triples,
+    points_of,
+    prepared_mesh,
+)
 from exactmesh.verify.properties import (
     Orientation,
     Property,
@@ -35,16 +52,18 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
-from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified, turned
-from exactmesh.verify.witness import IndexArray
+from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
+from exactmesh.verify.witness import IndexArray, joined
 
 __all__ = ["verify"]
 
 
+@overload
 def verify(
     points: npt.ArrayLike,
     triangles: npt.ArrayLike,
     *,
+    quads: npt.ArrayLike | None = None,
     segments: npt.ArrayLike | None = None,
     domain: Domain | None = None,
     labels: npt.ArrayLike | None = None,
@@ -52,7 +71,40 @@ def verify(
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
     claims: Collection[Property | str] | None = None,
-    orientation: Orientation | str = Orientation.CCW,
+    orientation: Orientation | str | None = None,
+) -> Report: ...
+
+
+@overload
+def verify(
+    points: object,
+    triangles: None = None,
+    *,
+    quads: npt.ArrayLike | None = None,
+    segments: npt.ArrayLike | None = None,
+    domain: Domain | None = None,
+    labels: npt.ArrayLike | None = None,
+    min_angle: float | None = None,
+    max_angle: float | None = None,
+    max_area: float | npt.ArrayLike | None = None,
+    claims: Collection[Property | str] | None = None,
+    orientation: Orientation | str | None = None,
+) -> Report: ...
+
+
+def verify(
+    points: object,
+    triangles: npt.ArrayLike | None = None,
+    *,
+    quads: npt.ArrayLike | None = None,
+    segments: npt.ArrayLike | None = None,
+    domain: Domain | None = None,
+    labels: npt.ArrayLike | None = None,
+    min_angle: float | None = None,
+    max_angle: float | None = None,
+    max_area: float | npt.ArrayLike | None = None,
+    claims: Collection[Property | str] | None = None,
+    orientation: Orientation | str | None = None,
 ) -> Report:
     """Decide exactly which properties a set of triangles has; by default, whether it is what ``delaunay``
     promises, or, with segments or a domain, what ``constrained_delaunay`` does.
@@ -61,13 +113,17 @@ def verify(
     for arrays from anywhere: nothing about the triangles is assumed, nothing is sampled, no tolerance is used.
 
     Args:
-        points: (n, 2), any numeric dtype whose values are doubles; NaN and infinity fail FINITE.
+        points: (n, 2), any numeric dtype whose values are doubles; NaN and infinity fail FINITE. Or, alone, a mesh of
+            any package that :func:`exactmesh.adapters.given_mesh` understands, from scipy's Delaunay to the path of a
+            file: what comes with it, such as its domain, is taken from there, unless it is given here.
         triangles: (m, 3), any integer dtype; an index out of range fails INDICES.
+        quads: (k, 4), quadrilaterals besides or instead, each in the order of its sides. In a report cells are
+            numbered triangles first, so that quads[0] is cell m.
         segments: (s, 2) indices of points: straight lines that should be edges, or chains of edges. None stands for
             the segments of the domain, if there is one.
         domain: what should be covered, such as a :class:`exactmesh.PSLG`, in points and indices of its own: they are
             matched with those of the mesh by position, exactly.
-        labels: (m,) numbers, one a triangle: the attribute of its region.
+        labels: (m,) numbers, one a triangle: the attribute of its region; with quadrilaterals (m + k,).
         min_angle, max_angle: degrees, from 0 to 180: claims that no angle is below or above, exactly. No claim is made
             of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
         max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
@@ -76,8 +132,11 @@ def verify(
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
             of the domain (:data:`~exactmesh.verify.DOMAIN_TRIANGULATION`); with labels, REGIONS besides. Bounds are
-            always claimed. GABRIEL, CIRCUMCENTRES_INSIDE and REGION_AREAS are decided only if they are claimed.
-        orientation: "ccw", or "any" to take clockwise triangles as well.
+            always claimed. GABRIEL, CIRCUMCENTRES_INSIDE and REGION_AREAS are decided only if they are claimed. Of
+            quadrilaterals, and of meshes of finite elements (of meshio, pyvista, scikit-fem, shapely),
+            :data:`~exactmesh.verify.ADMISSIBLE_MESH` is claimed, with what is said there.
+        orientation: "ccw", or "any" to take clockwise triangles as well. None is "ccw" for arrays, and for other meshes
+            what their package promises.
 
     Raises:
         ShapeError: an array has another shape or dtype.
@@ -85,7 +144,9 @@ def verify(
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
         BoundError: an angle outside of 0 to 180 degrees, an area that is no number or not positive.
-        ChoiceError: an unknown claim, rule or orientation, or a claim about something that was not given.
+        ChoiceError: an unknown claim, rule or orientation, a claim about something that was not given, or one that
+            has no meaning for quadrilaterals.
+        AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
 
     O(n + m) for a Delaunay triangulation; O((n + m + s) log(n + m + s)) in general. Reference [Mehlhorn 1999],
     [Devillers 1998].
@@ -100,26 +161,34 @@ def verify(
     >>> report.violations[0].magnitude
     Fraction(96, 1)
     """
-    doubles, triples = points_of(points), index_triples(triangles)
+    cells = Given(points, triangles, quads)
+    extras = Extras(segments, domain, labels, orientation)
+    if triangles is None and quads is None:
+        cells, extras = _of_mesh(points, extras)
+    doubles = points_of(cast(npt.ArrayLike, cells.points))
+    triples = index_triples(() if cells.triangles is None else cells.triangles)
+    fours = index_quads(() if cells.quads is None else cells.quads)
     bounds = bounds_of(min_angle, max_angle, max_area, len(triples))
     asked = asked_properties(
-        segments=segments is not None,
-        domain=domain is not None,
-        labels=labels is not None,
+        segments=extras.segments is not None,
+        domain=extras.domain is not None,
+        labels=extras.labels is not None,
         bounds=bounds.properties,
+        quads=bool(len(fours)),
     )
-    claimed, chosen = claimed_properties(claims, asked), orientation_of(orientation)
+    claimed = claimed_properties(claims, asked, extras.usual)
+    chosen = orientation_of(Orientation.CCW if extras.orientation is None else extras.orientation)
     decided = decided_properties(asked, claimed)
-    constraints = constraints_of(segments, domain, labels, len(triples))
+    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triples) + len(fours))
     findings = {
         Property.FINITE: check_finite(doubles),
-        Property.INDICES: check_indices(triples, len(doubles)),
+        Property.INDICES: check_indices(triples, fours, len(doubles)),
     }
     failed = tuple(property_ for property_, finding in findings.items() if finding.verdict is Verdict.FAILS)
     counts = np.zeros((2, len(Stage)), dtype=np.int64)
     if not failed:
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
-            mesh, positions = prepared_mesh(doubles, triples, stacked(constraints.outline))
+            mesh, positions = prepared_mesh(doubles, triples, fours, stacked(constraints.outline))
             findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, decided))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
@@ -130,6 +199,7 @@ def verify(
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
+        quad_count=len(fours),
         stages={
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
@@ -137,12 +207,46 @@ def verify(
         mesh=CheckedMesh(
             doubles,
             triples,
+            fours,
             segments=constraints.segments,
             labels=constraints.labels,
             domain=constraints.outline,
             bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
             orientation=chosen,
         ),
+    )
+
+
+class Given(NamedTuple):
+    """Points and cells, as they were given."""
+
+    points: object
+    triangles: npt.ArrayLike | None
+    quads: npt.ArrayLike | None
+
+
+class Extras(NamedTuple):
+    """What comes with them; ``usual`` is what is claimed of meshes of this sort."""
+
+    segments: npt.ArrayLike | None
+    domain: Domain | None
+    labels: npt.ArrayLike | None
+    orientation: Orientation | str | None
+    usual: tuple[Property, ...] | None = None
+
+
+def _of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
+    """Return the arrays of a mesh of some package, and what comes with it, unless something else was given."""
+    from exactmesh.adapters import given_mesh  # arrays need none of it
+
+    given = given_mesh(mesh)
+    own_domain = extras.domain is None
+    return Given(given.points, given.triangles, given.quads), Extras(
+        given.segments if extras.segments is None else extras.segments,
+        given.domain if own_domain else extras.domain,
+        given.labels if extras.labels is None and own_domain else extras.labels,
+        given.orientation if extras.orientation is None else extras.orientation,
+        given.claims,
     )
 
 
@@ -154,7 +258,8 @@ def _numbers(**bounds: npt.ArrayLike | None) -> dict[str, float | FloatArray]:
 
 @dataclass(frozen=True, slots=True)
 class Tiling:
-    """What is known about the triangles with area, counterclockwise, when their admissibility is decided."""
+    """What is known about the triangles with area and the convex quadrilaterals, counterclockwise, when their
+    admissibility is decided."""
 
     links: Links
     admissible: Finding
@@ -170,17 +275,20 @@ def check_mesh(
     bounds: Bounds,
     decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
-    """Decide everything about finite points and valid triangles; ``positions`` are those of the domain."""
-    local = localized(mesh.coordinates, mesh.triangles)
-    shapes = classified(mesh.context, local)
-    upright = turned(mesh.triangles, shapes)
-    listed = upright if orientation is Orientation.ANY else mesh.triangles
-    proper = upright[shapes.orientation > 0] if (shapes.orientation == 0).any() else upright
+    """Decide everything about finite points and valid cells; ``positions`` are those of the domain."""
+    local = localized(mesh.coordinates, mesh.triangles, mesh.quads)
+    shapes = classified(mesh.context, local, turns_of(mesh.context, local))
+    cells = upright_cells(mesh, shapes)
+    listed = cells if orientation is Orientation.ANY else Cells(mesh.triangles, mesh.quads)
+    proper = proper_cells(cells, shapes)
     tiling = tiled(mesh, shapes, _links(mesh, proper, local))
-    links = tiling.links if listed is proper else _links(mesh, listed, local)
-    unused = unused_points(links)
+    links = tiling.links if listed.are(proper) else _links(mesh, listed, local)
+    upright, unused = cells.triangles, unused_points(links)
     findings = {
-        Property.ORIENTATION: check_orientation(mesh, shapes, orientation),
+        Property.ORIENTATION: joined(
+            (check_orientation(mesh, shapes, orientation), check_quad_orientation(mesh, shapes, orientation))
+        ),
+        Property.CONVEX: check_convex(mesh, shapes),
         Property.ALL_POINTS_USED: check_used(mesh, unused),
         Property.EDGE_MANIFOLD: check_edges(mesh, links),
         Property.VERTEX_MANIFOLD: _fans(mesh, links, tiling),
@@ -232,17 +340,18 @@ def _missing_for_circles(links: Links, marks: Marks, findings: dict[Property, Fi
     return tuple(missing)
 
 
-def _links(mesh: Mesh, triangles: IntArray, local: Local) -> Links:
-    """Return the links of triangles; ``local`` is the copy of those that were listed."""
-    if triangles is not mesh.triangles:
-        local = localized(mesh.coordinates, triangles)
+def _links(mesh: Mesh, cells: Cells, local: Local) -> Links:
+    """Return the links of cells; ``local`` is the copy of those that were listed."""
+    if not cells.are(Cells(mesh.triangles, mesh.quads)):
+        local = localized(mesh.coordinates, *cells)
     return linked(len(mesh.points), mesh.context, local)
 
 
 def tiled(mesh: Mesh, shapes: Shapes, links: Links) -> Tiling:
-    """Decide ADMISSIBLE: triangles without area, then edges with two triangles on a side, then the
-    boundary."""
-    for finding in (check_zero_area(mesh, shapes), check_overlap(mesh, links)):
+    """Decide ADMISSIBLE: triangles without area and quadrilaterals that are not convex, then edges with two cells on a
+    side, then the boundary."""
+    improper = joined((check_zero_area(mesh, shapes), check_convex(mesh, shapes, Property.ADMISSIBLE)))
+    for finding in (improper, check_overlap(mesh, links)):
         if finding.verdict is Verdict.FAILS:
             return Tiling(links, replace(finding, lower_bound=True), None, None)
     boundary = boundary_of(links)
@@ -275,11 +384,10 @@ def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArr
     if not admissible or unused.size:
         first = first_at_position(mesh.points)
         distinct = check_distinct(mesh.points, first)
-        if not missing and len(mesh.triangles):
+        if not missing and len(mesh.triangles) and not len(mesh.quads):
             used = np.flatnonzero(tiling.links.last > tiling.links.first)
             enclosed = enclosed_points(unused, used, first)
-    return {
-        Property.DISTINCT_POINTS: distinct,
-        Property.COVERS_HULL: hull,
-        Property.DELAUNAY: check_delaunay(mesh, shapes, tiling.links, enclosed, tuple(missing)),
-    }
+    findings = {Property.DISTINCT_POINTS: distinct, Property.COVERS_HULL: hull}
+    if not len(mesh.quads):
+        findings[Property.DELAUNAY] = check_delaunay(mesh, shapes, tiling.links, enclosed, tuple(missing))
+    return findings

@@ -69,8 +69,11 @@ def triangle_name(points: FloatArray, corners: Iterable[int]) -> str:
     return ", ".join(point_name(points, int(v)) for v in corners)
 
 
-def rows_of_triangles(triangles: IntArray, wanted: Sequence[tuple[int, ...]], n: int) -> list[tuple[int, ...]]:
-    """Return for each triple of corners the rows of the triangles that have them, in any order. O(m)."""
+def rows_of_triangles(
+    triangles: IntArray, wanted: Sequence[tuple[int, ...]], n: int, quads: IntArray | None = None
+) -> list[tuple[int, ...]]:
+    """Return for each triple of corners the rows of the triangles that have them, in any order, and those of the
+    quadrilaterals that have them in a row. O(m)."""
     near = np.zeros(n, dtype=np.bool_)
     near[[v for corners in wanted for v in corners]] = True
     found: dict[frozenset[int], list[int]] = {frozenset(corners): [] for corners in wanted}
@@ -79,18 +82,28 @@ def rows_of_triangles(triangles: IntArray, wanted: Sequence[tuple[int, ...]], n:
         rows = found.get(frozenset(triangles[row].tolist()))
         if rows is not None and len(rows) < _NAMED_ROWS:
             rows.append(int(row))
+    if quads is not None:
+        for row in np.flatnonzero(near[quads].sum(axis=1) >= 3):
+            corners = quads[row].tolist()
+            for i in range(4):
+                rows = found.get(frozenset(corners[:i] + corners[i + 1 :]))
+                if rows is not None and len(rows) < _NAMED_ROWS:
+                    rows.append(len(triangles) + int(row))
     return [tuple(found[frozenset(corners)]) for corners in wanted]
 
 
-def rows_at_vertices(triangles: IntArray, vertices: IndexArray, n: int) -> dict[int, tuple[int, ...]]:
-    """Return for each vertex the first rows that have it as a corner. O(m)."""
+def rows_at_vertices(
+    triangles: IntArray, vertices: IndexArray, n: int, quads: IntArray | None = None
+) -> dict[int, tuple[int, ...]]:
+    """Return for each vertex the first rows of cells that have it as a corner. O(m)."""
     near = np.zeros(n, dtype=np.bool_)
     near[vertices] = True
     rows: dict[int, tuple[int, ...]] = {int(v): () for v in vertices}
-    for row in np.flatnonzero(near[triangles].any(axis=1)):
-        for v in triangles[row].tolist():
-            if v in rows and len(rows[v]) < _NAMED_ROWS:
-                rows[v] += (int(row),)
+    for before, cells in ((0, triangles), (len(triangles), triangles[:0] if quads is None else quads)):
+        for row in np.flatnonzero(near[cells].any(axis=1)):
+            for v in cells[row].tolist():
+                if v in rows and len(rows[v]) < _NAMED_ROWS:
+                    rows[v] += (before + int(row),)
     return rows
 
 

@@ -1,0 +1,84 @@
+"""Paths: exactmesh's own formats and Triangle's, then all that meshio reads."""
+
+import contextlib
+import io
+import os
+import warnings
+from typing import TYPE_CHECKING, cast
+
+from exactmesh.adapters.given import GivenMesh
+from exactmesh.adapters.meshio_mesh import convert as converted
+from exactmesh.adapters.own import convert as own_converted
+from exactmesh.errors import ExactMeshError, FileFormatError
+
+if TYPE_CHECKING:
+    import meshio
+
+__all__ = ["WORDS", "MeshioUnavailableError", "accepts", "convert", "is_own_format", "read_foreign"]
+
+WORDS = "paths of files, ours, Triangle's, or with the extra 'mesh' meshio's"
+
+_OWN = (".node", ".ele", ".poly", ".neigh", ".edge", ".npz", ".csv")
+
+
+class MeshioUnavailableError(ExactMeshError, ImportError):
+    """meshio, which reads the formats of other packages, is not installed."""
+
+
+def accepts(mesh: object) -> bool:
+    """Tell whether it is a path."""
+    return isinstance(mesh, str | os.PathLike) and isinstance(os.fspath(mesh), str)
+
+
+def is_own_format(path: str) -> bool:
+    """Tell by the suffix whether exactmesh reads the file itself."""
+    return os.path.splitext(path)[1] in _OWN
+
+
+def convert(mesh: object) -> GivenMesh:
+    """Return what the file holds."""
+    path = os.fspath(cast("str | os.PathLike[str]", mesh))
+    if not is_own_format(path):
+        return read_foreign(path)
+    from exactmesh.io import read_triangles
+
+    content = read_triangles(path)
+    if content.triangles is None:
+        raise FileFormatError("there are no triangles on file, only points", path=path)
+    return own_converted(content)
+
+
+def read_foreign(path: str) -> GivenMesh:
+    """Return what a file holds that meshio reads.
+
+    Raises:
+        MeshioUnavailableError: meshio is not installed.
+        FileFormatError: no such file, an unknown suffix, or a file that meshio cannot read.
+    """
+    if not os.path.exists(path):
+        raise FileFormatError("no such file", path=path)
+    mesh = _read(path)
+    try:
+        return converted(mesh)
+    except ExactMeshError as error:
+        raise FileFormatError(str(error).replace("a meshio Mesh", "the mesh", 1), path=path) from None
+
+
+def _read(path: str) -> "meshio.Mesh":
+    """Read silently: meshio prints, warns, and exits where it cannot read."""
+    try:
+        import meshio
+    except ImportError:
+        raise MeshioUnavailableError(
+            f"{path}: this format needs meshio, which is not installed: pip install 'exactmesh[mesh]'"
+        ) from None
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return meshio.read(path)
+    except MemoryError:
+        raise
+    except (Exception, SystemExit) as error:  # a broken file may make a reader raise anything
+        why = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
+        raise FileFormatError(f"meshio cannot read it: {why}", path=path) from None

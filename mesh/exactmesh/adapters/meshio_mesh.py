@@ -1,0 +1,75 @@
+"""meshio.Mesh, and with it every format that meshio reads."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from exactmesh.adapters.given import GivenMesh, Indices, index_rows, is_a, no_pairs, planar_points
+from exactmesh.errors import AdapterError
+from exactmesh.verify.properties import ADMISSIBLE_MESH, Orientation
+
+if TYPE_CHECKING:
+    from meshio import Mesh
+
+__all__ = ["WORDS", "accepts", "convert", "given_cells"]
+
+WORDS = "meshio.Mesh"
+
+#: How many corners a cell has, those first; what follows them lies on its sides or inside.
+_TRIANGLES = ("triangle", "triangle6", "triangle7")
+_QUADS = ("quad", "quad8", "quad9")
+_LINES = ("line", "line3")
+_PIXEL = [0, 1, 3, 2]  # VTK lists the corners of a pixel row by row
+
+
+def accepts(mesh: object) -> bool:
+    """Tell whether it is a meshio Mesh."""
+    return is_a(mesh, "meshio", "Mesh")
+
+
+def convert(mesh: object) -> GivenMesh:
+    """Return triangles and quadrilaterals of all blocks, each kind in its order, and lines as segments.
+
+    Points that no cell uses may be there: gmsh writes the centres of arcs. Labels of cells are left out: the formats do
+    not say which of them change across lines only.
+    """
+    found = cast("Mesh", mesh)
+    return given_cells(found.points, ((block.type, block.data) for block in found.cells), "a meshio Mesh")
+
+
+def given_cells(points: object, blocks: Iterable[tuple[str, object]], source: str) -> GivenMesh:
+    """Return the mesh of blocks of cells, named as meshio names them.
+
+    Raises:
+        AdapterError: another sort of cells, no cells, or points in space.
+    """
+    triangles: list[Indices] = []
+    quads: list[Indices] = []
+    lines: list[Indices] = []
+    for kind, rows in blocks:
+        if kind in _TRIANGLES:
+            triangles.append(index_rows(rows, 3, kind))
+        elif kind in _QUADS:
+            quads.append(index_rows(rows, 4, kind))
+        elif kind == "pixel":
+            quads.append(index_rows(rows, 4, kind)[:, _PIXEL])
+        elif kind in _LINES:
+            lines.append(index_rows(rows, 2, kind))
+        elif kind == "polygon" and len(shape := np.shape(cast("Indices", rows))) == 2 and shape[1] in (3, 4):
+            (triangles if shape[1] == 3 else quads).append(index_rows(rows, shape[1], kind))
+        elif kind != "vertex" and len(cast("Indices", rows)):
+            raise AdapterError(f"{source} has cells of type {kind!r}: neither triangles nor quadrilaterals")
+    if not triangles and not quads:
+        raise AdapterError(f"{source} has no triangles and no quadrilaterals")
+    joined = [np.concatenate([no_pairs(width), *rows]) for width, rows in ((3, triangles), (4, quads), (2, lines))]
+    corners = np.concatenate([joined[0].ravel(), joined[1].ravel()])
+    return GivenMesh(
+        planar_points(points, corners, source),
+        joined[0],
+        joined[1],
+        segments=joined[2] if len(joined[2]) else None,
+        orientation=Orientation.ANY,
+        claims=ADMISSIBLE_MESH,
+        source=source,
+    )
