@@ -42,6 +42,7 @@ __all__ = [
     "GeometryError",
     "HypothesisUnavailableError",
     "InadmissibleError",
+    "MesherError",
     "NonFiniteError",
     "NotConformingError",
     "NotDelaunayError",
@@ -147,6 +148,10 @@ class SnappingError(ExactMeshError):
 
 class TopologyError(ExactMeshError):
     """Indices that do not describe a triangulation, or an edge operation that the edge does not allow."""
+
+
+class MesherError(ExactMeshError):
+    """A mesher that cannot be put to the test: it cannot be found, imported or called in a process of its own."""
 
 
 class HypothesisUnavailableError(ExactMeshError, ImportError):

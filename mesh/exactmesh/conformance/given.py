@@ -1,0 +1,92 @@
+"""One input of a mesher, and the traits of it that excuse something."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from exactkernel.batch import orient2d_batch
+from exactkernel.types import FloatArray
+from exactmesh.crossings import Meeting, find_crossings
+
+__all__ = ["Given", "IndexArray", "Trait"]
+
+_LARGE = 2.0**250
+
+IndexArray = npt.NDArray[np.int64]
+
+
+class Trait(StrEnum):
+    """What an input has that makes it less ordinary. Of two that show the same, the more ordinary one is told."""
+
+    FLAT = "flat"
+    """All points lie on one line: there is no triangle, and an exception is an answer."""
+    DUPLICATES = "duplicates"
+    """Several points at one position: any one of them may stand for all."""
+    EXTREME = "extreme"
+    """A coordinate beyond 2^250, or below 2^-250 and not 0: its fourth power, as incircle has it, is no double."""
+    CROSSING = "crossing"
+    """Segments that cross or overlap: there is no triangulation of these points with these segments, so an exception is
+    an answer; if there are triangles, they tile the hull without overlap."""
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Points, and for meshers that take them segments.
+
+    Attributes:
+        points: float64 (n, 2), finite.
+        segments: int64 (s, 2), rows of ``points``; None for a mesher of points.
+
+    >>> from exactmesh.conformance import Given
+    >>> given = Given.of([(0, 0), (1, 0), (0, 1)])
+    >>> given.literal
+    '[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]'
+    """
+
+    points: FloatArray
+    segments: IndexArray | None = None
+
+    @classmethod
+    def of(cls, points: npt.ArrayLike, segments: npt.ArrayLike | None = None) -> "Given":
+        """Return the input with arrays of its own: O(n + s)."""
+        pairs = None if segments is None else np.array(segments, dtype=np.int64).reshape(-1, 2)
+        return cls(np.array(points, dtype=np.float64).reshape(-1, 2), pairs)
+
+    @property
+    def key(self) -> bytes:
+        """The input, bit for bit."""
+        return self.points.tobytes() + b"|" + (b"" if self.segments is None else self.segments.tobytes())
+
+    @property
+    def literal(self) -> str:
+        """The input as Python, every double in full: points, or a pair of points and segments."""
+        points = "[" + ", ".join(f"({x!r}, {y!r})" for x, y in self.points.tolist()) + "]"
+        if self.segments is None:
+            return points
+        return f"({points}, [{', '.join(f'({a}, {b})' for a, b in self.segments.tolist())}])"
+
+    @property
+    def size(self) -> tuple[int, int, int, int]:
+        """What makes an input smaller than another: fewer traits, fewer points, fewer segments, fewer digits."""
+        return len(self.traits), len(self.points), 0 if self.segments is None else len(self.segments), len(self.literal)
+
+    @cached_property
+    def traits(self) -> frozenset[Trait]:
+        """What excuses something; exact."""
+        found = set()
+        positions = np.unique(self.points + 0.0, axis=0)  # -0.0 is 0.0
+        if len(positions) < len(self.points):
+            found.add(Trait.DUPLICATES)
+        if len(positions) < 3 or not orient2d_batch(positions[0], positions[-1], positions).any():
+            found.add(Trait.FLAT)
+        magnitudes = np.abs(self.points[self.points != 0])
+        if ((magnitudes > _LARGE) | (magnitudes < 1 / _LARGE)).any():
+            found.add(Trait.EXTREME)
+        if self.segments is not None and len(self.segments):
+            kinds = find_crossings(self.points, self.segments).kinds
+            if (kinds != Meeting.TOUCH).any():
+                found.add(Trait.CROSSING)
+        return frozenset(found)
