@@ -92,6 +92,9 @@ def verify(
     json: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
     ] = None,
+    html: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a page that shows the mesh and what is wrong with it.")
+    ] = None,
 ) -> None:
     """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
     require_file(mesh)
@@ -118,6 +121,9 @@ def verify(
             report, note = checked_against(*graph, domain or "", content, claim or None, orientation, bounds), ""
     if json is not None and json != "-":
         _write_text(json, report.to_json())
+    if html is not None:
+        with working(f"writing {html}"):
+            _write_text(html, report.to_html(os.path.basename(mesh)))
     typer.echo(report.to_json() if json == "-" else str(report))
     if json != "-" and note:
         typer.echo(note)

@@ -263,6 +263,19 @@ class Report:
         }
         return json.dumps(document, indent=2, allow_nan=False)
 
+    def to_html(self, title: str | None = None) -> str:
+        """Return the report as one page for a browser, which needs no network: the mesh, to be zoomed, the failing
+        places listed and marked, their numbers.
+
+        Args:
+            title: a heading; None stands for the size of the mesh.
+
+        O(n + m), in time and size.
+        """
+        from exactmesh.html import page_of  # a room of its own: the verifier itself knows no picture
+
+        return page_of(self, title)
+
     def __str__(self) -> str:
         return "\n".join(self._lines())
 

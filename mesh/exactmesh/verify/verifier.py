@@ -288,7 +288,7 @@ def check_mesh(
     cells = upright_cells(mesh, shapes)
     listed = cells if orientation is Orientation.ANY else Cells(mesh.triangles, mesh.quads)
     proper = proper_cells(cells, shapes)
-    tiling = tiled(mesh, shapes, _links(mesh, proper, local))
+    tiling = tiled(mesh, shapes, cells, _links(mesh, proper, local))
     links = tiling.links if listed.are(proper) else _links(mesh, listed, local)
     upright, unused = cells.triangles, unused_points(links)
     findings = {
@@ -297,8 +297,8 @@ def check_mesh(
         ),
         Property.CONVEX: check_convex(mesh, shapes),
         Property.ALL_POINTS_USED: check_used(mesh, unused),
-        Property.EDGE_MANIFOLD: check_edges(mesh, links),
-        Property.VERTEX_MANIFOLD: _fans(mesh, links, tiling),
+        Property.EDGE_MANIFOLD: check_edges(mesh, listed, links),
+        Property.VERTEX_MANIFOLD: _fans(mesh, listed, links, tiling),
         Property.ADMISSIBLE: tiling.admissible,
         Property.WEAKLY_ACUTE: check_angles(mesh, shapes, Property.WEAKLY_ACUTE),
         Property.ACUTE: check_angles(mesh, shapes, Property.ACUTE),
@@ -354,26 +354,26 @@ def _links(mesh: Mesh, cells: Cells, local: Local) -> Links:
     return linked(len(mesh.points), mesh.context, local)
 
 
-def tiled(mesh: Mesh, shapes: Shapes, links: Links) -> Tiling:
+def tiled(mesh: Mesh, shapes: Shapes, cells: Cells, links: Links) -> Tiling:
     """Decide ADMISSIBLE: triangles without area and quadrilaterals that are not convex, then edges with two cells on a
     side, then the boundary."""
     improper = joined((check_zero_area(mesh, shapes), check_convex(mesh, shapes, Property.ADMISSIBLE)))
-    for finding in (improper, check_overlap(mesh, links)):
+    for finding in (improper, check_overlap(mesh, cells, links)):
         if finding.verdict is Verdict.FAILS:
             return Tiling(links, replace(finding, lower_bound=True), None, None)
     boundary = boundary_of(links)
     cycle = convex_cycle(mesh, boundary)
-    admissible = Finding(Verdict.HOLDS) if cycle is not None else check_sweep(mesh, boundary)
+    admissible = Finding(Verdict.HOLDS) if cycle is not None else check_sweep(mesh, cells, boundary)
     return Tiling(links, admissible, boundary, cycle)
 
 
-def _fans(mesh: Mesh, links: Links, tiling: Tiling) -> Finding:
+def _fans(mesh: Mesh, cells: Cells, links: Links, tiling: Tiling) -> Finding:
     """VERTEX_MANIFOLD: admissible triangles that close round a vertex leave no room for more, so two fans are
     open ones, and each begins with an edge of the boundary. Otherwise every vertex is walked round."""
     boundary = tiling.boundary
     if links is not tiling.links or boundary is None or tiling.admissible.verdict is not Verdict.HOLDS:
-        return check_fans(mesh, links)
-    return fans_finding(mesh, np.unique(boundary.origin[1:][boundary.origin[1:] == boundary.origin[:-1]]))
+        return check_fans(mesh, cells, links)
+    return fans_finding(mesh, cells, np.unique(boundary.origin[1:][boundary.origin[1:] == boundary.origin[:-1]]))
 
 
 def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArray) -> dict[Property, Finding]:
