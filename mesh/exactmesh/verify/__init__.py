@@ -35,6 +35,7 @@ from exactmesh.verify.properties import (
     Verdict,
 )
 from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, VerificationError, Violation
+from exactmesh.verify.submesh import Submesh
 from exactmesh.verify.verifier import verify
 
 __all__ = [
@@ -54,6 +55,7 @@ __all__ = [
     "Property",
     "Report",
     "Severity",
+    "Submesh",
     "Verdict",
     "VerificationError",
     "Violation",

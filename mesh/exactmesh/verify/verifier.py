@@ -52,6 +52,7 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
+from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
 
@@ -194,8 +195,18 @@ def verify(
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
     undecided = Finding(Verdict.UNDECIDED, because=failed)
+    checked = CheckedMesh(
+        doubles,
+        triples,
+        fours,
+        segments=constraints.segments,
+        labels=constraints.labels,
+        domain=constraints.outline,
+        bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
+        orientation=chosen,
+    )
     return Report(
-        findings={property_: findings.get(property_, undecided) for property_ in decided},
+        findings={property_: with_numbers(findings.get(property_, undecided), checked) for property_ in decided},
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
@@ -204,16 +215,7 @@ def verify(
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
         },
-        mesh=CheckedMesh(
-            doubles,
-            triples,
-            fours,
-            segments=constraints.segments,
-            labels=constraints.labels,
-            domain=constraints.outline,
-            bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
-            orientation=chosen,
-        ),
+        mesh=checked,
     )
 
 
