@@ -19,6 +19,7 @@
   incircle: not called
 """
 
+from exactmesh.verify.certificate import Certificate, CertificateCheck, check_certificate, read_certificate
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
@@ -46,6 +47,8 @@ __all__ = [
     "DOMAIN_TRIANGULATION",
     "FORMAT",
     "WITNESSES",
+    "Certificate",
+    "CertificateCheck",
     "CheckedMesh",
     "ChoiceError",
     "Domain",
@@ -59,5 +62,7 @@ __all__ = [
     "Verdict",
     "VerificationError",
     "Violation",
+    "check_certificate",
+    "read_certificate",
     "verify",
 ]

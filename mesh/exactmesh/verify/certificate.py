@@ -10,18 +10,22 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.types import FloatArray, IntArray
 from exactmesh.errors import CertificateError
 from exactmesh.verify.checked import CheckedMesh
-from exactmesh.verify.document import FORMAT, Json, document_of, given_document
-from exactmesh.verify.domain import Domain
+from exactmesh.verify.document import FORMAT, document_of, given_document
+from exactmesh.verify.domain import Domain, Outline, constraints_of
 from exactmesh.verify.hashing import mesh_sha256
+from exactmesh.verify.mesh import index_quads, index_triples, points_of
 from exactmesh.verify.report import Report
-from exactmesh.verify.verifier import checked_mesh, verify
+from exactmesh.verify.verifier import Extras, Given, of_mesh, verify
 
 __all__ = ["Certificate", "CertificateCheck", "check_certificate", "read_certificate"]
 
 #: What was given, what messages call it, and how it is given again.
 _THINGS = {"segments": "segments", "domain": "a domain", "labels": "labels"}
+#: The arguments that are bounds.
+_BOUNDS = {"min_angle", "max_angle", "max_area", "size", "within"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,18 +164,42 @@ def check_certificate(
     >>> bool(check_certificate(text, points, triangles, again=True))
     True
     >>> check_certificate(text, points, [(1, 2, 0)]).differences
-    ('the mesh is another one: its sha256 is e0d0e9ab..., that of the certificate is 55dcf92e...',)
+    ('the mesh is another one: its sha256 is 7e8e4cb1..., that of the certificate is 6103f473...',)
     """
     read = read_certificate(certificate) if isinstance(certificate, str) else certificate
-    numbers = {name: bound for name, bound in read.bounds.items() if not isinstance(bound, dict)}
-    given = {**{name: float(cast("float | str", bound)) for name, bound in numbers.items()}, **(bounds or {})}
-    mesh = checked_mesh(points, triangles, quads, segments, domain, labels, given, str(read.given["orientation"]))
+    mesh = _given_mesh(Given(points, triangles, quads), Extras(segments, domain, labels, None), _bounds(read, bounds))
     _require_the_same_things(read, mesh)
     differences = list(_differences(read, mesh))
     if differences or not again:
         return CertificateCheck(tuple(differences), read)
-    report = _verified_again(read, mesh, domain)
+    report = _verified_again(read, mesh)
     return CertificateCheck(tuple(_other_answers(read, report)), read, report)
+
+
+def _bounds(certificate: Certificate, arrays: Mapping[str, npt.ArrayLike] | None) -> dict[str, float | FloatArray]:
+    """Return the numbers of the certificate, and the arrays."""
+    bounds: dict[str, float | FloatArray] = {}
+    for name, bound in certificate.bounds.items():
+        if isinstance(bound, dict):
+            continue
+        try:
+            bounds[name] = float(cast("float | str", bound))
+        except (TypeError, ValueError):
+            raise CertificateError(f"the certificate has no proper bound {name!r}") from None
+    for name, array in (arrays or {}).items():
+        bounds[name] = np.asarray(array, dtype=np.float64)
+    return bounds
+
+
+def _given_mesh(cells: Given, extras: Extras, bounds: Mapping[str, float | FloatArray]) -> CheckedMesh:
+    """Return what was given as the verifier would take it."""
+    if cells.triangles is None and cells.quads is None:
+        cells, extras = of_mesh(cells.points, extras)
+    triangles = index_triples(() if cells.triangles is None else cells.triangles)
+    quads = index_quads(() if cells.quads is None else cells.quads)
+    points = points_of(cast("npt.ArrayLike", cells.points))
+    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triangles) + len(quads))
+    return CheckedMesh(points, triangles, quads, constraints.segments, constraints.labels, constraints.outline, bounds)
 
 
 def _require_the_same_things(certificate: Certificate, mesh: CheckedMesh) -> None:
@@ -180,7 +208,7 @@ def _require_the_same_things(certificate: Certificate, mesh: CheckedMesh) -> Non
         if (certificate.given[name] is None) != (given[name] is None):
             fault = "not about" if given[name] is not None else "about"
             raise CertificateError(f"the certificate is {fault} {noun}: {name}")
-    names = set(certificate.bounds) ^ set(cast(Json, given["bounds"]))
+    names = {*certificate.bounds, *mesh.bounds} - _BOUNDS | set(certificate.bounds) ^ set(mesh.bounds)
     if names:
         raise CertificateError(f"bounds of the certificate and those given differ: {', '.join(sorted(names))}")
 
@@ -205,17 +233,36 @@ def _difference(name: str, theirs: object, ours: object) -> Iterator[str]:
         yield f"{name} {verb} sha256 is {str(ours)[:8]}..., that of the certificate is {str(theirs)[:8]}..."
 
 
-def _verified_again(certificate: Certificate, mesh: CheckedMesh, domain: Domain | None) -> Report:
-    bounds = cast("dict[str, float]", dict(mesh.bounds))  # arrays among them: verify takes both
+@dataclass(frozen=True, slots=True)
+class _Domain:
+    """The domain of a mesh that was given."""
+
+    points: FloatArray
+    segments: IntArray
+    holes: FloatArray
+    regions: FloatArray
+    rule: str
+
+
+def _domain(outline: Outline | None) -> _Domain | None:
+    if outline is None:
+        return None
+    regions = np.column_stack([outline.regions, outline.attributes, outline.areas]).reshape(-1, 4)
+    rule = "even-odd" if outline.even_odd else "seeds"
+    return _Domain(outline.points, outline.segments.astype(np.int32), outline.holes, regions, rule)
+
+
+def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
+    bounds = cast("dict[str, float]", dict(mesh.bounds))  # some may be arrays, where verify takes arrays
     return verify(
         mesh.points,
         mesh.triangles,
         quads=mesh.quads if len(mesh.quads) else None,
         segments=mesh.segments,
-        domain=domain,
+        domain=_domain(mesh.domain),
         labels=mesh.labels,
         claims=certificate.claims,
-        orientation=mesh.orientation,
+        orientation=str(certificate.given["orientation"]),
         **bounds,
     )
 

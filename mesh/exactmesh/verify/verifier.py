@@ -56,7 +56,7 @@ from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
 
-__all__ = ["verify"]
+__all__ = ["Extras", "Given", "of_mesh", "verify"]
 
 
 @overload
@@ -165,7 +165,7 @@ def verify(
     cells = Given(points, triangles, quads)
     extras = Extras(segments, domain, labels, orientation)
     if triangles is None and quads is None:
-        cells, extras = _of_mesh(points, extras)
+        cells, extras = of_mesh(points, extras)
     doubles = points_of(cast(npt.ArrayLike, cells.points))
     triples = index_triples(() if cells.triangles is None else cells.triangles)
     fours = index_quads(() if cells.quads is None else cells.quads)
@@ -237,7 +237,7 @@ class Extras(NamedTuple):
     usual: tuple[Property, ...] | None = None
 
 
-def _of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
+def of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
     """Return the arrays of a mesh of some package, and what comes with it, unless something else was given."""
     from exactmesh.adapters import given_mesh  # arrays need none of it
 
