@@ -1,6 +1,7 @@
 """V1 and V2 with quadrilaterals: verdicts are those of brute force on polygons, and each condition is necessary."""
 
 from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from itertools import combinations, permutations, product
 from random import Random
 
@@ -10,7 +11,7 @@ import pytest
 from proofs_tests import cells_oracle, domain_oracle, oracles
 from proofs_tests.cells_oracle import Cell
 
-from exactkernel import ShapeError
+from exactkernel import ShapeError, Sign
 from exactkernel.types import FloatArray, SignArray
 from exactmesh import PSLG
 from exactmesh.errors import ChoiceError
@@ -25,6 +26,7 @@ from exactmesh.verify import (
     verify,
 )
 from exactmesh.verify.cells import Cells
+from exactmesh.verify.triangles import Shapes
 
 Points = Sequence[tuple[float, float]]
 
@@ -200,7 +202,7 @@ class TestTilingsOfAGrid:
         assert report.verdict(Property.SEGMENTS_PRESENT) is Verdict.FAILS
         original = cells.proper_cells
 
-        def cut(upright: Cells, shapes: cells.Shapes) -> Cells:
+        def cut(upright: Cells, shapes: Shapes) -> Cells:
             triangles, quads = original(upright, shapes)
             halves = np.concatenate([triangles, quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
             return Cells(np.ascontiguousarray(halves), quads[:0])
@@ -384,12 +386,12 @@ class TestWitnesses:
     def test_magnitudes(self) -> None:
         dart = verify([(0, 0), (4, 0), (1, 1), (0, 4)], (), quads=[(0, 1, 2, 3)])
         (witness,) = dart.findings[Property.CONVEX].violations
-        assert (witness.kind, witness.magnitude, witness.sign) == (Kind.REFLEX_CORNER, -8, -1)
+        assert (witness.kind, witness.magnitude, witness.sign) == (Kind.REFLEX_CORNER, Fraction(-8), Sign.NEGATIVE)
         assert "its corner 2 (1.0, 1.0) is reflex" in witness.message
         assert dart.verdict(Property.ORIENTATION) is Verdict.HOLDS
         turned = verify([(0, 0), (4, 0), (1, 1), (0, 4)], (), quads=[(3, 2, 1, 0)])
         (witness,) = turned.findings[Property.ORIENTATION].violations
-        assert (witness.kind, witness.magnitude) == (Kind.CLOCKWISE, -8)
+        assert (witness.kind, witness.magnitude) == (Kind.CLOCKWISE, Fraction(-8))
 
     def test_indices(self) -> None:
         report = verify([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1, 2)], quads=[(0, 1, 2, 1), (0, 1, 2, 7)])

@@ -165,7 +165,7 @@ def bottleneck(
     """Return the farthest vertex on the nearest chain from a to b, NO_VERTEX or NO_CHAIN."""
     v, size, farthest = a, 0, NO_VERTEX
     while True:
-        for i in range(2 * links.first[v], 2 * links.first[v + 1]):
+        for i in range(2 * links.first[v], 2 * links.last[v]):
             w = links.slots[i >> 1] & _LOW if i & 1 else links.slots[i >> 1] >> 32
             if w == b and is_ahead(k, line, points[v, 0], points[v, 1], points[b, 0], points[b, 1]):
                 return farthest
@@ -187,7 +187,7 @@ def next_vertex(
 ) -> int:  # fmt: skip
     """Return b if an edge leads there, else the nearest vertex ahead that has not been visited, or -1."""
     best = -1
-    for i in range(2 * links.first[v], 2 * links.first[v + 1]):
+    for i in range(2 * links.first[v], 2 * links.last[v]):
         w = links.slots[i >> 1] & _LOW if i & 1 else links.slots[i >> 1] >> 32
         if w == b and is_ahead(k, line, points[v, 0], points[v, 1], points[b, 0], points[b, 1]):
             return b

@@ -42,7 +42,7 @@ class Line:
 
     def ahead(self, v: int, b: int) -> list[tuple[mpq, int]]:
         """Return the neighbours ahead of v with their distances: b at once, others between the ends only."""
-        bucket = self.links.slots[self.links.first[v] : self.links.first[v + 1]]
+        bucket = self.links.slots[self.links.first[v] : self.links.last[v]]
         here, found = self.along(v), []
         for w in np.unique([bucket >> 32, bucket & _LOW]).tolist():
             place = self.along(w)

@@ -8,7 +8,6 @@ import numpy.typing as npt
 from gmpy2 import mpq
 
 from exactkernel.context import chunk_size
-from exactkernel.errors import BoundError, shown
 from exactkernel.jit import jit
 from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
@@ -26,25 +25,10 @@ __all__ = [
     "mark_chains",
     "near_chains",
     "slots_of_chains",
-    "within_of",
 ]
 
 _CHUNK = 1 << 12  # segments between two looks at Ctrl-C
 _MARGIN = 2.0**-40
-
-
-def within_of(within: float | None) -> float | None:
-    """Validate a distance.
-
-    Raises:
-        BoundError: no number, or a negative one.
-    """
-    if within is None:
-        return None
-    given: object = within
-    if not isinstance(given, (int, float, np.integer, np.floating)) or isinstance(given, bool) or not given >= 0:
-        raise BoundError(f"within is a distance, 0 or more, not {shown(given)}")
-    return float(given)
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,12 +92,15 @@ def _bound(bound: float | FloatArray) -> object:
 
 def finding_document(finding: "Finding") -> Json:
     """Return what was found about one property."""
+    squared = finding.distance_squared
+    distance = {} if squared is None else {"distance_squared": _rational(squared)}
     return {
         "verdict": finding.verdict.value,
         "count": finding.count,
         "count_is_lower_bound": finding.lower_bound,
         "rounding": finding.rounding,
         "because": [property_.value for property_ in finding.because],
+        **distance,
         "violations": [violation_document(violation) for violation in finding.violations],
     }
 

@@ -5,6 +5,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import inf, isqrt, nextafter
 
 from exactkernel.errors import ExactMeshError
 from exactkernel.types import Sign, Stage
@@ -23,6 +24,19 @@ _ROUNDING_FAILS = "~"
 _UNCLAIMED_FAILS = "-"  # a fact, not a fault
 _WIDTH = 16  # of the column of names
 _SHOWN = 3  # violations of a property that str(report) prints
+
+
+def root_above(value: Fraction) -> float:
+    """Return the smallest double whose square is not smaller, possibly infinity."""
+    shift = max(0, 128 - value.numerator.bit_length() + value.denominator.bit_length()) // 2
+    root = Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
+    try:
+        nearest = float(root)
+    except OverflowError:
+        return inf
+    while nearest < inf and Fraction(nearest) ** 2 < value:
+        nearest = nextafter(nearest, inf)
+    return nearest
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +117,7 @@ class Finding:
             plane sweep).
         because: for UNDECIDED, the properties that would have to hold first.
         rounding: how many of ``count`` are rounding-sized.
+        distance_squared: where a distance was allowed (``within``), the exact square of the one that was found.
     """
 
     verdict: Verdict
@@ -111,6 +126,12 @@ class Finding:
     lower_bound: bool = False
     because: tuple[Property, ...] = ()
     rounding: int = 0
+    distance_squared: Fraction | None = None
+
+    @property
+    def distance(self) -> float | None:
+        """The root of ``distance_squared``, rounded up."""
+        return None if self.distance_squared is None else root_above(self.distance_squared)
 
     @property
     def severity(self) -> Severity | None:
@@ -202,6 +223,18 @@ class Report:
                 yield from self._severities(awaited)
 
     @property
+    def distance_squared(self) -> Fraction | None:
+        """The exact square of the largest distance of a vertex of the mesh from where the domain has it: of a vertex on
+        a segment from the segment, of a corner from its point. None unless ``within`` was given."""
+        finding = self.findings.get(Property.SEGMENTS_PRESENT)
+        return None if finding is None else finding.distance_squared
+
+    @property
+    def distance(self) -> float | None:
+        """The root of ``distance_squared``, rounded up to a double."""
+        return None if self.distance_squared is None else root_above(self.distance_squared)
+
+    @property
     def violations(self) -> tuple[Violation, ...]:
         """All witnesses, claimed properties or not, in the order of the properties."""
         return tuple(violation for finding in self.findings.values() for violation in finding.violations)
@@ -291,6 +324,8 @@ class Report:
             if finding.rounding:
                 share = "all" if finding.rounding == finding.count else f"{finding.rounding} of them"
                 text += f", {share} rounding-sized"
+        if finding.distance is not None and finding.verdict is Verdict.HOLDS:
+            text += f" within {finding.distance:.3g}"
         if finding.because:
             text += f": {' and '.join(finding.because)} would have to hold"
         return text if property_ in self.claims else f"{text} (not claimed)"

@@ -71,6 +71,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -88,6 +89,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -104,6 +106,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report:
@@ -129,6 +132,10 @@ def verify(
             of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
         max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
             positive where there is no bound.
+        within: how far the mesh may be from the domain, 0 to infinity: each segment may be a chain of edges ever
+            forward, all vertices of which are so near to it, and each corner may be so far from its point of the
+            domain. What is said of segments and of the domain is then said of the displaced ones, and
+            ``Report.distance`` says how far they are, exactly. None: not at all.
         claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
@@ -144,7 +151,7 @@ def verify(
         CoordinateError: a coordinate is not exactly a double.
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
-        BoundError: an angle outside of 0 to 180 degrees, an area that is no number or not positive.
+        BoundError: an angle outside of 0 to 180 degrees, an area or a distance that is none.
         ChoiceError: an unknown claim, rule or orientation, a claim about something that was not given, or one that
             has no meaning for quadrilaterals.
         AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
@@ -180,7 +187,7 @@ def verify(
     claimed = claimed_properties(claims, asked, extras.usual)
     chosen = orientation_of(Orientation.CCW if extras.orientation is None else extras.orientation)
     decided = decided_properties(asked, claimed)
-    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triples) + len(fours))
+    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triples) + len(fours), within)
     findings = {
         Property.FINITE: check_finite(doubles),
         Property.INDICES: check_indices(triples, fours, len(doubles)),
@@ -202,7 +209,7 @@ def verify(
         segments=constraints.segments,
         labels=constraints.labels,
         domain=constraints.outline,
-        bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
+        bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area, within=within),
         orientation=chosen,
     )
     return Report(
