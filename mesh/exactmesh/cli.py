@@ -139,7 +139,7 @@ def verify(
 @app.command(name="check-certificate")
 def check_certificate(
     certificate: Annotated[str, typer.Argument(metavar="CERT", help="What verify --json wrote.")],
-    mesh: _AnyMesh,
+    mesh: _Mesh,
     domain: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="What MESH should cover, if verify was told by --domain."),
