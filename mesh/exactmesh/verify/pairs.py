@@ -83,7 +83,9 @@ def overlapping_row(mesh: Mesh, cells: Cells, row: int) -> int:
     low, high = own.min(axis=0), own.max(axis=0)
     for before, block in ((0, cells.triangles), (len(cells.triangles), cells.quads)):
         x, y = mesh.coordinates[:, 0][block], mesh.coordinates[:, 1][block]
-        near = (x.min(axis=1) < high[0]) & (x.max(axis=1) > low[0]) & (y.min(axis=1) < high[1]) & (y.max(axis=1) > low[1])
+        near = (
+            (x.min(axis=1) < high[0]) & (x.max(axis=1) > low[0]) & (y.min(axis=1) < high[1]) & (y.max(axis=1) > low[1])
+        )
         rows = np.flatnonzero(near)
         for start in range(0, len(rows), _CHUNK):
             part = rows[start : start + _CHUNK]

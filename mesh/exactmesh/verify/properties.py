@@ -110,6 +110,9 @@ class Property(StrEnum):
     """Every triangle has an area and no angle above a bound."""
     MAX_AREA = "max_area"
     """No triangle has an area above its bound."""
+    MAX_LENGTH = "max_length"
+    """No triangle has an edge longer than the size that is wanted at its centroid (rounded), or that is given for
+    it."""
     REGION_AREAS = "region_areas"
     """No triangle in a face of the segments that contains the point of a region is larger than the fourth number of the
     region, if that is positive. UNDECIDED without ADMISSIBLE and SEGMENTS_PRESENT."""
@@ -188,6 +191,7 @@ class Kind(StrEnum):
     SMALL_ANGLE = "small_angle"
     LARGE_ANGLE = "large_angle"
     LARGE_AREA = "large_area"
+    LONG_EDGE = "long_edge"
 
 
 #: The default claims with segments: a constrained Delaunay triangulation of the hull of the points.
@@ -263,10 +267,11 @@ _NEEDS = {
     Property.MIN_ANGLE: "min_angle=",
     Property.MAX_ANGLE: "max_angle=",
     Property.MAX_AREA: "max_area=",
+    Property.MAX_LENGTH: "size=",
     Property.REGION_AREAS: "a domain",
 }
 #: What is claimed wherever it is given.
-_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
+_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA, Property.MAX_LENGTH)
 
 
 def asked_properties(

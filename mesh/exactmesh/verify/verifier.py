@@ -52,6 +52,7 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
+from exactmesh.verify.sizes import Size, check_lengths
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
 
@@ -70,6 +71,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
@@ -88,6 +90,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
@@ -105,6 +108,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
@@ -131,6 +135,8 @@ def verify(
             of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
         max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
             positive where there is no bound.
+        size: claims that no triangle has an edge longer than its size: a positive number, (m,), or a function that is
+            called once with the centroids (m, 2) and returns one or m of them.
         within: how far the mesh may be from the domain, 0 to infinity: each segment may be a chain of edges ever
             forward, all vertices of which are so near to it, and each corner may be so far from its point of the
             domain. What is said of segments and of the domain is then said of the displaced ones, and
@@ -150,7 +156,7 @@ def verify(
         CoordinateError: a coordinate is not exactly a double.
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
-        BoundError: an angle outside of 0 to 180 degrees, an area or a distance that is none.
+        BoundError: an angle outside of 0 to 180 degrees, an area, a size or a distance that is none.
         ChoiceError: an unknown claim, rule or orientation, a claim about something that was not given, or one that
             has no meaning for quadrilaterals.
         AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
@@ -175,7 +181,7 @@ def verify(
     doubles = points_of(cast(npt.ArrayLike, cells.points))
     triples = index_triples(() if cells.triangles is None else cells.triangles)
     fours = index_quads(() if cells.quads is None else cells.quads)
-    bounds = bounds_of(min_angle, max_angle, max_area, len(triples))
+    bounds = bounds_of(min_angle, max_angle, max_area, size, len(triples))
     asked = asked_properties(
         segments=extras.segments is not None,
         domain=extras.domain is not None,
@@ -218,7 +224,13 @@ def verify(
             segments=constraints.segments,
             labels=constraints.labels,
             domain=constraints.outline,
-            bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area, within=within),
+            bounds=_numbers(
+                min_angle=min_angle,
+                max_angle=max_angle,
+                max_area=max_area,
+                size=None if callable(size) else size,
+                within=within,
+            ),
             orientation=chosen,
         ),
     )
@@ -323,13 +335,15 @@ def check_mesh(
 
 
 def _against_bounds(mesh: Mesh, shapes: Shapes, upright: IntArray, bounds: Bounds) -> dict[Property, Finding]:
-    """MIN_ANGLE, MAX_ANGLE, MAX_AREA, as far as they were given."""
+    """MIN_ANGLE, MAX_ANGLE, MAX_AREA, MAX_LENGTH, as far as they were given."""
     findings = {}
     for property_, angle in ((Property.MIN_ANGLE, bounds.min_angle), (Property.MAX_ANGLE, bounds.max_angle)):
         if angle is not None:
             findings[property_] = check_angle_bound(mesh, shapes, upright, angle, property_)
     if bounds.max_area is not None:
         findings[Property.MAX_AREA] = check_areas(mesh, upright, bounds.max_area, Property.MAX_AREA)
+    if bounds.size is not None:
+        findings[Property.MAX_LENGTH] = check_lengths(mesh, bounds.size)
     return findings
 
 
