@@ -28,6 +28,8 @@ from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
 from exactmesh.verify.domain import Constraints, Domain, constraints_of
+from exactmesh.verify.dual import Dual
+from exactmesh.verify.duality import check_dual
 from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
@@ -73,6 +75,7 @@ def verify(
     max_area: float | npt.ArrayLike | None = None,
     size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -92,6 +95,7 @@ def verify(
     max_area: float | npt.ArrayLike | None = None,
     size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -110,6 +114,7 @@ def verify(
     max_area: float | npt.ArrayLike | None = None,
     size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report:
@@ -141,6 +146,8 @@ def verify(
             forward, all vertices of which are so near to it, and each corner may be so far from its point of the
             domain. What is said of segments and of the domain is then said of the displaced ones, and
             ``Report.distance`` says how far they are, exactly. None: not at all.
+        dual: a Voronoi diagram, claimed to be the dual of the triangles: :class:`exactmesh.Voronoi`,
+            ``scipy.spatial.Voronoi``, or Triangle's arrays (vertices, edges, origins of rays, their directions).
         claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
@@ -186,7 +193,7 @@ def verify(
         segments=extras.segments is not None,
         domain=extras.domain is not None,
         labels=extras.labels is not None,
-        bounds=bounds.properties,
+        bounds=bounds.properties if dual is None else (*bounds.properties, Property.VORONOI_DUAL),
         quads=bool(len(fours)),
     )
     claimed = claimed_properties(claims, asked, extras.usual)
@@ -202,7 +209,7 @@ def verify(
     if not failed:
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
             mesh, positions = prepared_mesh(doubles, triples, fours, stacked(constraints.outline))
-            findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, decided))
+            findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, dual, decided))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
@@ -292,6 +299,7 @@ def check_mesh(
     constraints: Constraints,
     positions: FloatArray,
     bounds: Bounds,
+    dual: Dual | None,
     decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide everything about finite points and valid cells; ``positions`` are those of the domain."""
@@ -317,6 +325,8 @@ def check_mesh(
     }
     findings.update(_against_points(mesh, shapes, tiling, unused))
     findings.update(_against_bounds(mesh, shapes, upright, bounds))
+    if dual is not None:
+        findings[Property.VORONOI_DUAL] = check_dual(mesh, tiling.links, upright, dual, findings[Property.DELAUNAY])
     boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
     marks = np.zeros(len(tiling.links.slots), dtype=np.uint8)
     if constraints.any:
