@@ -1,19 +1,14 @@
 """V1 and V2: ten thousand corrupted meshes, every verdict on each of them held against brute force."""
 
-import os
-from collections import Counter
-from collections.abc import Callable, Iterator
-from functools import lru_cache
+from collections.abc import Iterator
 from math import isqrt
 from random import Random
 
 import numpy as np
-import pytest
 from proofs_tests import oracles
 from proofs_tests.corrupted_oracle import Area, Case, Truth
 from proofs_tests.test_verify_constrained import Plain
 
-from exactkernel import Sign
 from exactmesh.errors import OptionError
 from exactmesh.strategies import Corrupted, Corruption, PlainMesh, corrupt
 from exactmesh.strategies.naive import Place, flipped, inner_quads, is_convex, legalized, opposites, swept
