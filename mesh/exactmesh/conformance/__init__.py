@@ -6,6 +6,7 @@ True
 """
 
 from exactmesh.conformance.checking import DEADLINE, MAX_EXAMPLES, MAX_SIZE, check, retry
+from exactmesh.conformance.corpus import BUNDLES, CORPUS, Case, case_named
 from exactmesh.conformance.given import Given, Trait
 from exactmesh.conformance.known import KNOWN, Known
 from exactmesh.conformance.laws import LAWS, Behaviour, Law, Outcome, Task
@@ -14,12 +15,15 @@ from exactmesh.conformance.reference import loaded
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
 
 __all__ = [
+    "BUNDLES",
+    "CORPUS",
     "DEADLINE",
     "KNOWN",
     "LAWS",
     "MAX_EXAMPLES",
     "MAX_SIZE",
     "Behaviour",
+    "Case",
     "Conformance",
     "Counterexample",
     "Given",
@@ -30,6 +34,7 @@ __all__ = [
     "Ruling",
     "Task",
     "Trait",
+    "case_named",
     "check",
     "loaded",
     "retry",
