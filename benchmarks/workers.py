@@ -16,7 +16,7 @@ from benchmarks.inputs import points_of
 from benchmarks.peers import PEERS, Mesher, version_of
 from benchmarks.refining import CALLBACKS, REFINERS
 from benchmarks.refining_cases import CASES, case_of
-from benchmarks.verifying import VERIFIERS
+from benchmarks.verifying import CONSTRAINED_VERIFIERS, VERIFIERS
 
 __all__ = ["Outcome", "race"]
 
@@ -50,7 +50,9 @@ class Outcome:
 
 
 def _mesher(key: str) -> Mesher:
-    return {**PEERS, **VERIFIERS, **CONSTRAINERS, **REFINERS, **CALLBACKS, **DIAGRAMS, **USES}[key]
+    return {**PEERS, **VERIFIERS, **CONSTRAINERS, **REFINERS, **CALLBACKS, **DIAGRAMS, **USES, **CONSTRAINED_VERIFIERS}[
+        key
+    ]
 
 
 def _input(name: str, size: int | None) -> Any:

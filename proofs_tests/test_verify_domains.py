@@ -404,7 +404,7 @@ class TestInput:
     )
     def test_what_is_no_domain(self, domain: object, words: str) -> None:
         with pytest.raises(ShapeError, match=words):
-            verify(SQUARE, QUARTERS, domain=domain)  # type: ignore[arg-type]  # a wrong type
+            verify(SQUARE, QUARTERS, domain=domain)  # type: ignore[call-overload]  # a wrong type
 
     def test_unreadable(self) -> None:
         report = verify([*SQUARE[:4], (np.nan, 1)], QUARTERS, domain=PSLG(SQUARE, SPOKES))

@@ -279,7 +279,7 @@ class TestClaims:
     @pytest.mark.parametrize("bad", ["a", [1.0], [[1.0, 1.0]], [1j, 2j]])
     def test_bad_shapes(self, bad: object) -> None:
         with pytest.raises(ShapeError, match="max_area"):
-            verify(KITE, HALVES, max_area=bad)  # type: ignore[arg-type]  # what an untyped caller passes
+            verify(KITE, HALVES, max_area=bad)  # type: ignore[call-overload]  # what an untyped caller passes
 
     def test_unreadable(self) -> None:
         report = verify([(0, 0), (1, math.nan), (0, 1)], [(0, 1, 2)], min_angle=20, claims=CIRCLES)
@@ -303,7 +303,7 @@ def conforming(**changed: object) -> Report:
     domain = PSLG(points, [(0, 1), (1, 2), (2, 3), (3, 0)])
     mesh = constrained_delaunay(domain)
     bounds: dict[str, object] = {"min_angle": 5, "max_angle": 160, "max_area": 1.75, **changed}
-    return verify(mesh.points, mesh.triangles, domain=domain, claims=CONFORMING_TRIANGULATION, **bounds)  # type: ignore[arg-type]  # bounds by name
+    return verify(mesh.points, mesh.triangles, domain=domain, claims=CONFORMING_TRIANGULATION, **bounds)  # type: ignore[call-overload, no-any-return]  # bounds by name
 
 
 @pytest.mark.obligation("V2", "each condition about shapes is necessary")

@@ -94,6 +94,9 @@ def verify(
     json: Annotated[
         str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
     ] = None,
+    html: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Write a page that shows the mesh and what is wrong with it.")
+    ] = None,
 ) -> None:
     """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
     require_file(mesh)
@@ -120,12 +123,48 @@ def verify(
             report, note = checked_against(*graph, domain or "", content, claim or None, orientation, bounds), ""
     if json is not None and json != "-":
         _write_text(json, report.to_json())
+    if html is not None:
+        with working(f"writing {html}"):
+            _write_text(html, report.to_html(os.path.basename(mesh)))
     typer.echo(report.to_json() if json == "-" else str(report))
     if json != "-" and note:
         typer.echo(note)
     if base and json != "-" and report.violations:
         typer.echo(f"(Numbers in this report count from 0, those in the files from {base}.)")
     raise typer.Exit(0 if report.ok else _VIOLATION)
+
+
+@app.command(name="check-certificate")
+def check_certificate(
+    certificate: Annotated[str, typer.Argument(metavar="CERT", help="What verify --json wrote.")],
+    mesh: _AnyMesh,
+    domain: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="What MESH should cover, if verify was told by --domain."),
+    ] = None,
+    again: Annotated[
+        bool, typer.Option("--again", help="Verify MESH once more, by the same claims, and compare the verdicts.")
+    ] = False,
+) -> None:
+    """Check that CERT is about MESH, bit by bit: exit code 0 if it is, 1 if not."""
+    require_file(certificate)
+    require_file(mesh)
+    from exactmesh.certificate_file import checked_certificate, said_of
+    from exactmesh.errors import CertificateError
+    from exactmesh.progress import working
+    from exactmesh.verify import read_certificate
+
+    with open(certificate, "rb") as stream:
+        try:
+            read = read_certificate(stream.read().decode())
+        except (CertificateError, UnicodeDecodeError) as error:
+            raise CertificateError(f"{certificate}: {error}") from None
+    content = _cells_of(mesh)
+    graph = None if domain is None else _domain_of(domain, None)[0]
+    with working(f"checking {mesh}"):
+        check = checked_certificate(read, content, graph, again=again)
+    typer.echo(said_of(check, certificate, mesh))
+    raise typer.Exit(0 if check else _VIOLATION)
 
 
 def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":

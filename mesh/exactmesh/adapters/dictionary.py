@@ -9,11 +9,13 @@ import numpy.typing as npt
 from exactkernel.arrays import exact_doubles, finite_points
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray
-from exactmesh.adapters.given import GivenMesh, index_rows
+from exactmesh.adapters.given import GivenMesh, Indices, index_rows
 from exactmesh.adapters.own import domain_by_seeds
 from exactmesh.errors import AdapterError
 
 __all__ = ["WORDS", "accepts", "convert"]
+
+_WITH_MIDDLES = 6  # corners, and a node on each side
 
 WORDS = "dictionaries with 'vertices' and 'triangles', as Triangle's"
 
@@ -24,14 +26,17 @@ def accepts(mesh: object) -> bool:
 
 
 def convert(mesh: object) -> GivenMesh:
-    """Return vertices and triangles (their corners, where there are six nodes). Segments, holes and regions are the
-    domain; labels are the attributes of triangles, where there are regions."""
+    """Return vertices and triangles; where these have six nodes, their corners, without vertices that are only nodes on
+    sides. Segments, holes and regions are the domain; labels are the attributes of triangles, where there are regions.
+    """
     content = cast("Mapping[str, npt.ArrayLike]", mesh)
     points = exact_doubles(content["vertices"], "vertices")
     if content.get("triangles") is None:
         raise AdapterError("the dictionary has no 'triangles'")
     triangles = index_rows(content["triangles"], 3, "triangles")
     segments = index_rows(content.get("segments", ()), 2, "segments")
+    if np.shape(content["triangles"])[-1] == _WITH_MIDDLES:
+        points, triangles, segments = _without_middles(points, np.asarray(content["triangles"]), segments)
     if not len(segments):
         return GivenMesh(points, triangles, source="a dictionary of triangle")
     regions = _regions(content)
@@ -45,6 +50,19 @@ def convert(mesh: object) -> GivenMesh:
         ),
         source="a dictionary of triangle",
     )
+
+
+def _without_middles(points: FloatArray, nodes: Indices, segments: Indices) -> tuple[FloatArray, Indices, Indices]:
+    """Leave out vertices that are nodes on sides, and neither corners nor ends of segments."""
+    corners, middles = nodes[:, :3], nodes[:, 3:]
+    dropped = np.setdiff1d(middles, np.union1d(corners, segments))
+    kept = np.setdiff1d(np.arange(len(points)), dropped)
+    if not len(kept) or any(
+        rows.size and (rows.min() < 0 or rows.max() >= len(points)) for rows in (corners, segments)
+    ):
+        return points, corners, segments  # what is wrong with the numbers will be said
+    number = np.searchsorted(kept, np.arange(len(points)))
+    return points[kept], number[corners], number[segments]
 
 
 def _regions(content: Mapping[str, npt.ArrayLike]) -> FloatArray:

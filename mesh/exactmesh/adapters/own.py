@@ -1,19 +1,39 @@
 """exactmesh's own: Triangulation, Refinement, what a file holds, and what an adapter made."""
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.adapters.given import GivenDomain, GivenMesh, is_a
 from exactmesh.errors import AdapterError
+from exactmesh.verify.domain import Domain
 
 if TYPE_CHECKING:
     from exactmesh.io import Mesh
-    from exactmesh.refinement import Refinement
-    from exactmesh.triangulation import Triangulation
 
 __all__ = ["WORDS", "accepts", "convert", "domain_by_seeds"]
+
+
+class _Triangulation(Protocol):
+    """What is asked of a Triangulation; adapters know no algorithm, not even by its type."""
+
+    @property
+    def points(self) -> FloatArray: ...
+    @property
+    def triangles(self) -> IntArray: ...
+    @property
+    def segments(self) -> IntArray: ...
+    @property
+    def triangle_attributes(self) -> FloatArray: ...
+    @property
+    def domain(self) -> Domain | None: ...
+
+
+class _Refinement(Protocol):
+    @property
+    def triangulation(self) -> _Triangulation: ...
+
 
 WORDS = "exactmesh's Triangulation, Refinement and io.Mesh"
 
@@ -24,17 +44,18 @@ def accepts(mesh: object) -> bool:
 
 
 def convert(mesh: object) -> GivenMesh:
-    """Return the arrays, and the domain that they should cover."""
+    """Return the arrays, and the domain that they should cover: what the object says that it covers, so that of a
+    refinement it is the displaced one."""
     if isinstance(mesh, GivenMesh):
         return mesh
     if is_a(mesh, "exactmesh", "Refinement"):
-        return _of_triangulation(cast("Refinement", mesh).triangulation, "a Refinement")
+        return _of_triangulation(cast(_Refinement, mesh).triangulation, "a Refinement")
     if is_a(mesh, "exactmesh", "Triangulation"):
-        return _of_triangulation(cast("Triangulation", mesh), "a Triangulation")
+        return _of_triangulation(cast(_Triangulation, mesh), "a Triangulation")
     return _of_file(cast("Mesh", mesh))
 
 
-def _of_triangulation(mesh: "Triangulation", source: str) -> GivenMesh:
+def _of_triangulation(mesh: _Triangulation, source: str) -> GivenMesh:
     """Without a domain the hull is covered, and segments, if there are any, are edges of the triangles."""
     domain = mesh.domain
     segments = mesh.segments if domain is None and len(mesh.segments) else None

@@ -22,8 +22,11 @@ except ImportError:
         "exactmesh.strategies needs hypothesis, which is not installed: pip install 'exactmesh[hypothesis]'"
     ) from None
 
+from exactmesh.strategies.corrupting import corrupt, corrupted_triangulations
+from exactmesh.strategies.corruptions import Corrupted, Corruption
 from exactmesh.strategies.graphs import pslgs
 from exactmesh.strategies.lines import near_concurrent, slits, small_angles, t_junctions
+from exactmesh.strategies.meshes import PlainMesh, triangulations
 from exactmesh.strategies.point_sets import duplicate_points, points
 from exactmesh.strategies.polygons import polygons, polygons_with_holes, shared_borders, spirals
 from exactmesh.strategies.regular import cocircular_points, collinear_points, grid_points, tilted_grid_points
@@ -34,11 +37,17 @@ from exactmesh.strategies.scattered import (
     subnormal_points,
     uniform_points,
 )
+from exactmesh.strategies.structures import quadedges
 
 __all__ = [
+    "Corrupted",
+    "Corruption",
+    "PlainMesh",
     "clustered_points",
     "cocircular_points",
     "collinear_points",
+    "corrupt",
+    "corrupted_triangulations",
     "duplicate_points",
     "far_points",
     "grid_points",
@@ -48,6 +57,7 @@ __all__ = [
     "polygons",
     "polygons_with_holes",
     "pslgs",
+    "quadedges",
     "shared_borders",
     "slits",
     "small_angles",
@@ -55,5 +65,6 @@ __all__ = [
     "subnormal_points",
     "t_junctions",
     "tilted_grid_points",
+    "triangulations",
     "uniform_points",
 ]

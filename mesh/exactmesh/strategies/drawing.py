@@ -12,6 +12,7 @@ from exactmesh.errors import OptionError
 __all__ = [
     "Words",
     "bits_for",
+    "check_integer",
     "check_sizes",
     "codes",
     "distinct",
@@ -40,15 +41,24 @@ def check_sizes(min_size: int, max_size: int, least: int = 0) -> None:
     Raises:
         OptionError: they are no integers, negative, below the least possible, or in the wrong order.
     """
-    for name, size in (("min_size", min_size), ("max_size", max_size)):
-        if isinstance(size, bool) or not isinstance(size, int):
-            raise OptionError(f"{name}={shown(size)} is no integer")
+    check_integer("min_size", min_size)
+    check_integer("max_size", max_size)
     if min_size < 0:
         raise OptionError(f"min_size={min_size} is negative")
     if max_size < min_size:
         raise OptionError(f"max_size={max_size} is below min_size={min_size}")
     if max_size < least:
         raise OptionError(f"max_size={max_size}: {least} points are needed")
+
+
+def check_integer(name: str, value: object) -> None:
+    """Refuse what is no integer.
+
+    Raises:
+        OptionError: it is none, or a bool.
+    """
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise OptionError(f"{name}={shown(value)} is no integer")
 
 
 def words(min_size: int, max_size: int) -> st.SearchStrategy[Words]:

@@ -1,6 +1,7 @@
 """Polygons that are simple by construction: zigzags, staircases, spirals, with holes, with common borders."""
 
 from itertools import accumulate, pairwise
+from math import isqrt
 
 import numpy as np
 from hypothesis import strategies as st
@@ -141,7 +142,7 @@ def _with_holes(draw: st.DrawFn, low: int, high: int) -> PSLG:
     spare = size - 4 - 3 * count  # vertices beyond four corners and triangles
     squares = min(count, draw(st.integers(0, spare)))
     spare -= squares
-    side = max(int(np.ceil(np.sqrt(count))), spare // 4 + 1) + draw(st.integers(0, 1))
+    side = max(isqrt(count) + 1, spare // 4 + 1) + draw(st.integers(0, 1))  # more cells than holes
     square = _WHOLE if draw(st.booleans()) else _SQUARE
     below = np.stack([np.arange(1, spare + 1), np.zeros(spare, dtype=np.int64)], axis=1)
     outline = np.array([(4 * side, 0), (4 * side, 4 * side), (0, 4 * side)])

@@ -5,10 +5,9 @@ from functools import cache
 import numpy as np
 from hypothesis import strategies as st
 
-from exactkernel.errors import shown
 from exactkernel.types import FloatArray
 from exactmesh.errors import OptionError
-from exactmesh.strategies.drawing import Words, check_sizes, codes, distinct, scattered, seeds, shuffled
+from exactmesh.strategies.drawing import Words, check_integer, check_sizes, codes, distinct, scattered, seeds, shuffled
 
 __all__ = ["cocircular_points", "collinear_points", "grid_points", "tilted_grid_points"]
 
@@ -163,8 +162,9 @@ def collinear_points(*, min_size: int = 3, max_size: int = 20, ulps: int = 2) ->
     [[1.0, 1.0], [2.0, 1.0], [3.0, 1.0]]
     """
     check_sizes(min_size, max_size)
+    check_integer("ulps", ulps)
     if not 0 <= ulps <= _MOST_ULPS:
-        raise OptionError(f"ulps={shown(ulps)} is not in 0 .. {_MOST_ULPS}")
+        raise OptionError(f"ulps={ulps} is not in 0 .. {_MOST_ULPS}")
     return _collinear(min_size, max_size, ulps)
 
 

@@ -26,21 +26,19 @@ that no two vertices of B share a position; inner vertices cannot, by the neighb
 import numpy as np
 
 from exactkernel.orient2d import orient2d
-from exactmesh.verify.boundary import Boundary
-from exactmesh.verify.links import Links
+from exactkernel.types import FloatArray
+from exactmesh.verify.boundary import Boundary, boundary_of
+from exactmesh.verify.cells import Cells
+from exactmesh.verify.links import Links, linked
+from exactmesh.verify.local import localized
 from exactmesh.verify.manifold import repeated_edges
 from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.pairs import overlapping_row, part_of, rows_listing
 from exactmesh.verify.properties import Kind, Property, Verdict
-from exactmesh.verify.report import Finding, Violation
-from exactmesh.verify.sweep import IMPROPER, PROPER, swept
+from exactmesh.verify.report import WITNESSES, Finding, Violation
+from exactmesh.verify.sweep import COVERED_TWICE, IMPROPER, PROPER, swept
 from exactmesh.verify.triangles import Shapes
-from exactmesh.verify.witness import (
-    IndexArray,
-    finding_of,
-    point_name,
-    rows_of_triangles,
-    triangle_name,
-)
+from exactmesh.verify.witness import IndexArray, finding_of, point_name, rows_at_vertices, triangle_name
 
 __all__ = ["check_overlap", "check_sweep", "check_zero_area"]
 
@@ -56,35 +54,59 @@ def check_zero_area(mesh: Mesh, shapes: Shapes) -> Finding:
     return finding_of(np.flatnonzero(shapes.orientation == 0), describe)
 
 
-def check_overlap(mesh: Mesh, links: Links) -> Finding:
-    """Find triangles on the same side of an edge."""
-    return repeated_edges(mesh, links, Property.ADMISSIBLE, Kind.OVERLAP, "they overlap")
+def check_overlap(mesh: Mesh, cells: Cells, links: Links) -> Finding:
+    """Find counterclockwise cells on the same side of an edge."""
+    return repeated_edges(mesh, cells, links, Property.ADMISSIBLE, Kind.OVERLAP, "they overlap")
 
 
-def check_sweep(mesh: Mesh, boundary: Boundary) -> Finding:
-    """Decide (i) and (ii), for triangles without repeated edges. O(b log b); stops at the first fault."""
-    vertices = np.unique(boundary.origin)  # a closed chain: the targets are the same
-    x, y = mesh.coordinates[vertices].T
-    order = np.lexsort((y, x))
-    points, vertices = mesh.coordinates[vertices[order]], vertices[order]
+def check_sweep(mesh: Mesh, cells: Cells, boundary: Boundary) -> Finding:
+    """Decide (i) and (ii), for counterclockwise cells without repeated edges. O(b log b); stops at the first fault."""
+    vertices, points = _sorted_vertices(mesh, boundary)
     same = (points[1:] == points[:-1]).all(axis=1)
     if same.any():
         return _coincident(mesh, np.stack([vertices[:-1][same], vertices[1:][same]], axis=1))
-    rank = np.empty(len(mesh.points), dtype=np.intp)
-    rank[vertices] = np.arange(len(vertices))
-    fault, e, f = swept(mesh.context, points, rank[boundary.origin], rank[boundary.target])
+    fault, edges = _swept(mesh, boundary, vertices, points)
     if fault == PROPER:
         return Finding(Verdict.HOLDS)
-    edges = [tuple(int(ends[i]) for ends in boundary) for i in (e, f)]
-    rows = tuple(t for found in rows_of_triangles(mesh.triangles, edges, len(mesh.points), mesh.quads) for t in found)
-    (a, b, _), (c, d, _) = edges
+    first, second = (rows[0] for rows in rows_listing(cells, np.array(edges), len(mesh.points)))
+    if fault == COVERED_TWICE:
+        first = overlapping_row(mesh, cells, second)
+    violation = _meeting(mesh, cells, (min(first, second), max(first, second)))
+    return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
+
+
+def _sorted_vertices(mesh: Mesh, boundary: Boundary) -> tuple[IndexArray, FloatArray]:
+    """Return the vertices of the boundary in lexicographic order, and where they are."""
+    vertices = np.unique(boundary.origin)  # a closed chain: the targets are the same
+    x, y = mesh.coordinates[vertices].T
+    vertices = vertices[np.lexsort((y, x))]
+    return vertices, mesh.coordinates[vertices]
+
+
+def _swept(
+    mesh: Mesh, boundary: Boundary, vertices: IndexArray, points: FloatArray
+) -> tuple[int, list[tuple[int, int]]]:
+    """Return the fault, and the two directed edges of the boundary that show it."""
+    rank = np.empty(len(mesh.points), dtype=np.intp)
+    rank[vertices] = np.arange(len(vertices))
+    fault, *shown = swept(mesh.context, points, rank[boundary.origin], rank[boundary.target])
+    edges = [] if fault == PROPER else [(int(boundary.origin[i]), int(boundary.target[i])) for i in shown]
+    return fault, edges
+
+
+def _meeting(mesh: Mesh, cells: Cells, rows: tuple[int, int]) -> Violation:
+    """Say how two cells meet where they should not: what the sweep finds when there are no others."""
+    part, own, points = part_of(mesh, cells, rows)
+    boundary = boundary_of(linked(len(part.points), part.context, localized(part.coordinates, *own)))
+    fault, edges = _swept(part, boundary, *_sorted_vertices(part, boundary))
+    (a, b), (c, d) = ((int(points[v]), int(points[w])) for v, w in edges)
     if fault == IMPROPER:
         kind, sentence = _improper(mesh, (a, b), (c, d))
+        message = f"{sentence}: {mesh.noun}s {rows[0]} and {rows[1]}"
     else:
         kind = Kind.OVERLAP
-        sentence = f"the left side of {_edge(mesh, c, d)} is covered twice, also from {_edge(mesh, a, b)}"
-    violation = Violation(Property.ADMISSIBLE, kind, rows, tuple(dict.fromkeys((a, b, c, d))), sentence)
-    return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
+        message = f"{mesh.noun}s {rows[0]} and {rows[1]} overlap, to the left of {_edge(mesh, c, d)}"
+    return Violation(Property.ADMISSIBLE, kind, rows, tuple(dict.fromkeys((a, b, c, d))), message)
 
 
 def _edge(mesh: Mesh, a: int, b: int) -> str:
@@ -92,10 +114,12 @@ def _edge(mesh: Mesh, a: int, b: int) -> str:
 
 
 def _coincident(mesh: Mesh, pairs: IndexArray) -> Finding:
+    rows = rows_at_vertices(mesh.triangles, pairs[:WITNESSES].ravel(), len(mesh.points), mesh.quads)
+
     def describe(i: int) -> Violation:
         v, w = pairs[i].tolist()
         message = f"corners {point_name(mesh.points, v)} and {point_name(mesh.points, w)} are at the same position"
-        return Violation(Property.ADMISSIBLE, Kind.HANGING_NODE, (), (v, w), message)
+        return Violation(Property.ADMISSIBLE, Kind.HANGING_NODE, (rows[v][0], rows[w][0]), (v, w), message)
 
     finding = finding_of(np.arange(len(pairs)), describe)
     return Finding(Verdict.FAILS, finding.count, finding.violations, lower_bound=True)

@@ -1,8 +1,10 @@
 """What is decided with segments, a domain or labels at hand, in the order in which one thing rests on another."""
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
+from gmpy2 import mpq
 
 from exactkernel.types import FloatArray
 from exactmesh.verify.boundary import Boundary, is_one_loop
@@ -15,6 +17,8 @@ from exactmesh.verify.hull import first_at_position
 from exactmesh.verify.links import Links
 from exactmesh.verify.matching import corners_at
 from exactmesh.verify.mesh import Integers, Mesh
+from exactmesh.verify.nearest import nearest_corners, squared_distance
+from exactmesh.verify.placement import displaced_placements, is_within, placed_exactly, used_points
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.regions import check_labels, check_region_areas
 from exactmesh.verify.report import Finding, Violation
@@ -83,10 +87,8 @@ def check_constraints(
     findings: dict[Property, Finding] = {}
     survey = None
     if outline is not None:
-        placed = _placed(tiled, outline, positions, bits)
-        survey = _survey(tiled, placed, free, bits)
-        findings, theirs = _of_domain(tiled, placed, survey, bits)
-        segments = _both(segments, theirs)
+        trial = _tried(tiled, outline, positions, free, bits, constraints.within)
+        findings, survey, segments = trial.findings, trial.survey, _both(segments, trial.segments)
     elif boundary is not None and free.size:
         survey = surveyed(mesh, links, tiled.marks, None, free, bits)
     findings[Property.SEGMENTS_PRESENT] = segments
@@ -164,22 +166,64 @@ def _free(tiled: Tiled) -> IndexArray:
     if not tiled.unused.size:
         return tiled.unused
     points = tiled.mesh.coordinates
-    return tiled.unused[corners_at(points, _used(tiled.links), points[tiled.unused]) < 0]
+    return tiled.unused[corners_at(points, used_points(tiled.links), points[tiled.unused]) < 0]
 
 
-def _used(links: Links) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    return links.last > links.first
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A domain where it may be in the mesh, and what follows.
+
+    Attributes:
+        tiled: with the marks that it makes.
+        placed: the domain.
+        survey: of the plane, or None where nothing depends on it.
+        findings: about the domain.
+        segments: SEGMENTS_PRESENT.
+    """
+
+    tiled: Tiled
+    placed: Placed
+    survey: Survey | None
+    findings: dict[Property, Finding]
+    segments: Finding
+
+    @property
+    def faults(self) -> tuple[int, int]:
+        """How many properties do not hold, and how many violations there are."""
+        found = (self.segments, self.findings[Property.COVERS_DOMAIN], self.findings[Property.DOMAIN_POINTS])
+        return sum(finding.verdict is not Verdict.HOLDS for finding in found), sum(finding.count for finding in found)
 
 
-def _placed(tiled: Tiled, outline: Outline, positions: FloatArray, bits: int) -> Placed:
-    n, h = len(outline.points), len(outline.holes)
-    points, holes, regions = positions[:n], positions[n : n + h], positions[n + h :]
-    corner = corners_at(tiled.mesh.coordinates, _used(tiled.links), points)
+def _tried(
+    tiled: Tiled, outline: Outline, positions: FloatArray, free: IndexArray, bits: int, within: float | None
+) -> Trial:
+    """Return the first of the ways to place the domain that does not fail, or the one with the fewest faults."""
     if outline.even_odd:
         require_even_ends(outline, first_at_position(outline.points))
-    present = chained(tiled.mesh, tiled.links, corner[outline.segments], tiled.marks, bits)
-    marks = tiled.marks if present.all() else tiled.marks.copy()
-    return Placed(outline, points, holes, regions, corner, present, marks)
+    mesh, links, marks = tiled.mesh, tiled.links, tiled.marks
+    if within is None:
+        return _trial(tiled, placed_exactly(mesh, links, outline, positions, marks, bits), free, bits)
+    best = None
+    for placed, written in displaced_placements(mesh, links, outline, positions, marks, bits, within):
+        trial = _trial(replace(tiled, marks=written), placed, free, bits)
+        if best is None or trial.faults < best.faults:
+            best = trial
+        if best.faults[0] == 0 or tiled.boundary is None:
+            break
+    assert best is not None  # there is always one
+    marks[:] = best.tiled.marks
+    return best
+
+
+def _trial(tiled: Tiled, placed: Placed, free: IndexArray, bits: int) -> Trial:
+    survey = _survey(tiled, placed, free, bits)
+    findings, segments = _of_domain(tiled, placed, survey, bits)
+    if placed.within is not None:
+        apart = findings[Property.DOMAIN_POINTS].distance_squared
+        distance = max(Fraction(int(placed.squared.numerator), int(placed.squared.denominator)), apart or Fraction(0))
+        segments = replace(segments, distance_squared=distance)
+        findings[Property.COVERS_DOMAIN] = replace(findings[Property.COVERS_DOMAIN], distance_squared=distance)
+    return Trial(tiled, placed, survey, findings, segments)
 
 
 def _survey(tiled: Tiled, placed: Placed, free: IndexArray, bits: int) -> Survey | None:
@@ -211,7 +255,7 @@ def _of_domain(
             cover = Finding(Verdict.UNDECIDED, because=(Property.SEGMENTS_PRESENT,))
     findings = {
         Property.COVERS_DOMAIN: cover,
-        Property.DOMAIN_POINTS: _domain_points(placed, survey, cover),
+        Property.DOMAIN_POINTS: _domain_points(tiled, placed, survey, cover),
         Property.NO_NEW_POINTS: _new_points(tiled, placed),
     }
     return findings, segments
@@ -226,8 +270,11 @@ def _cover(tiled: Tiled, placed: Placed, survey: Survey | None, bits: int) -> Fi
     return check_cover(mesh, links, marks, placed, survey)
 
 
-def _domain_points(placed: Placed, survey: Survey | None, cover: Finding) -> Finding:
-    """DOMAIN_POINTS: given that the union is the domain, a point belongs to the one if it lies in the other."""
+def _domain_points(tiled: Tiled, placed: Placed, survey: Survey | None, cover: Finding) -> Finding:
+    """DOMAIN_POINTS: given that the union is the domain, a point belongs to the one if it lies in the other.
+
+    Within a distance, its nearest corner will do.
+    """
     if not (placed.corner < 0).any():
         return Finding(Verdict.HOLDS)
     if survey is None or cover.verdict is not Verdict.HOLDS:
@@ -237,12 +284,21 @@ def _domain_points(placed: Placed, survey: Survey | None, cover: Finding) -> Fin
         message = f"point {point_name(placed.outline.points, v)} of the domain is no corner of any triangle"
         return Violation(Property.DOMAIN_POINTS, Kind.MISSING_POINT, (), (), message)
 
-    return finding_of(survey.stray[survey.stray_covered], describe)
+    culprits, mesh = survey.stray[survey.stray_covered], tiled.mesh
+    if placed.within is None or not culprits.size:
+        return finding_of(culprits, describe)
+    wanted = placed.outline.points[culprits]
+    corners = mesh.points[nearest_corners(mesh.points, np.flatnonzero(used_points(tiled.links)), wanted)]
+    pairs = [*zip(corners, wanted, strict=True)]
+    near = np.array([is_within(p, q, placed.within) for p, q in pairs])
+    squared = max((squared_distance(*pairs[i]) for i in np.flatnonzero(near).tolist()), default=mpq(0))
+    distance = Fraction(int(squared.numerator), int(squared.denominator))
+    return replace(finding_of(culprits[~near], describe), distance_squared=distance)
 
 
 def _new_points(tiled: Tiled, placed: Placed) -> Finding:
     """NO_NEW_POINTS: of two corners at one position only one is matched, which more than one point would not help."""
-    mesh, used = tiled.mesh, _used(tiled.links)
+    mesh, used = tiled.mesh, used_points(tiled.links)
     new = used.copy()
     new[placed.corner[placed.corner >= 0]] = False
     if new.any():
@@ -262,6 +318,8 @@ def _both(one: Finding, other: Finding) -> Finding:
     findings = [one, other]
     failing = [finding for finding in findings if finding.verdict is Verdict.FAILS]
     if failing:
-        return joined(failing)
+        return replace(joined(failing), distance_squared=other.distance_squared)
     because = dict.fromkeys(property_ for finding in findings for property_ in finding.because)
-    return Finding(Verdict.UNDECIDED, because=tuple(because)) if because else one
+    if because:
+        return Finding(Verdict.UNDECIDED, because=tuple(because), distance_squared=other.distance_squared)
+    return other

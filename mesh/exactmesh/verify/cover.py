@@ -11,10 +11,11 @@ Let the triangles be admissible, U their union, and let every segment run throug
    is that of the number of segments below it, and both sides of an edge within U agree iff its segments are even.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
+from gmpy2 import mpq
 
 from exactkernel.types import FloatArray
 from exactmesh.verify.chains import IN_DOMAIN, ODD, Marks, chained
@@ -40,6 +41,8 @@ class Placed:
         corner: (n,) the corner at each point's position, -1 where there is none.
         present: (s,) which segments are chains of edges from end to end.
         marks: of the edges, by these segments only.
+        within: how far segments and their ends may be from where they should be; None: not at all.
+        squared: the exact square of the largest such distance, isolated points left out.
     """
 
     outline: Outline
@@ -49,6 +52,8 @@ class Placed:
     corner: IndexArray
     present: npt.NDArray[np.bool_]
     marks: Marks
+    within: float | None = None
+    squared: mpq = field(default_factory=mpq)
 
     @property
     def absent(self) -> IndexArray:
@@ -175,7 +180,8 @@ def check_outer_parts(marks: Marks, placed: Placed, survey: Survey) -> Finding:
 
 
 def _missing(placed: Placed, i: int, fault: str) -> Violation:
-    message = f"{placed.name(i)} {fault}"
+    limit = "" if placed.within is None else f" (within {placed.within:g})"
+    message = f"{placed.name(i)} {fault}{limit}"
     return Violation(Property.SEGMENTS_PRESENT, Kind.MISSING_SEGMENT, (), placed.corners(i), message)
 
 

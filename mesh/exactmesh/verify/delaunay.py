@@ -9,8 +9,9 @@ from exactkernel.constants import INCIRCLE_BOUND
 from exactmesh.verify.grading import rank_circles
 from exactmesh.verify.links import NOT_DELAUNAY, Links, slots_of
 from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.pairs import rows_round
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
-from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.report import WITNESSES, Finding, Violation
 from exactmesh.verify.severity import circle_terms, severity_of
 from exactmesh.verify.triangles import Shapes
 from exactmesh.verify.witness import (
@@ -22,6 +23,7 @@ from exactmesh.verify.witness import (
     rows_of_triangles,
     sign_of,
     triangle_name,
+    twice_area,
 )
 
 __all__ = ["check_circles", "check_constrained", "check_delaunay", "enclosed_points"]
@@ -101,7 +103,7 @@ def _finding(
     parts = [
         finding_of(degenerate, lambda t: _without_circle(mesh, t, property_)),
         _edges(mesh, links, slots, property_),
-        finding_of(enclosed, lambda v: _enclosed(mesh, v, property_)),
+        _enclosed(mesh, enclosed, property_),
     ]
     finding = joined(parts, lower_bound=bool(missing))
     if finding.count:
@@ -117,9 +119,25 @@ def _without_circle(mesh: Mesh, t: int, property_: Property) -> Violation:
     return Violation(property_, Kind.ZERO_AREA, (t,), corners, message)
 
 
-def _enclosed(mesh: Mesh, v: int, property_: Property) -> Violation:
-    message = f"unused point {point_name(mesh.points, v)} lies inside the circumcircle of a triangle around it"
-    return Violation(property_, Kind.POINT_IN_CIRCLE, (), (v,), message)
+def _enclosed(mesh: Mesh, vertices: IndexArray, property_: Property) -> Finding:
+    """Name a triangle round each unused point that lies in the union of the triangles."""
+    if not vertices.size:
+        return Finding(Verdict.HOLDS)
+    rows = dict(zip(vertices.tolist(), rows_round(mesh, vertices[:WITNESSES]).tolist(), strict=False))
+
+    def describe(v: int) -> Violation:
+        t = rows[v]
+        corners = mesh.triangles[t].tolist()
+        magnitude, _ = circle_terms(mesh.points, corners, v)
+        magnitude *= sign_of(twice_area(mesh.points, *corners))
+        message = (
+            f"unused point {point_name(mesh.points, v)} lies in triangle {t} = {triangle_name(mesh.points, corners)}, "
+            f"inside its circumcircle: incircle {approximately(magnitude)}"
+        )
+        vertices, sign = (*corners, v), sign_of(magnitude)
+        return Violation(property_, Kind.POINT_IN_CIRCLE, (t,), vertices, message, sign, magnitude)
+
+    return finding_of(vertices, describe)
 
 
 def _edges(mesh: Mesh, links: Links, slots: IndexArray, property_: Property) -> Finding:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.arrays import finite_points
-from exactkernel.errors import ShapeError
+from exactkernel.errors import BoundError, ShapeError, shown
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.errors import ChoiceError, Fault, FaultKind, PSLGError
 from exactmesh.verify.mesh import Integers, index_pairs
@@ -67,11 +67,13 @@ class Constraints:
         segments: (s, 2) indices of points, as given and unchecked; None where none were given.
         outline: the domain, or None.
         labels: (m,) a label a triangle, or None.
+        within: how far the domain may be from the mesh, or None.
     """
 
     segments: Integers | None
     outline: Outline | None
     labels: FloatArray | None
+    within: float | None = None
 
     @property
     def any(self) -> bool:
@@ -80,20 +82,37 @@ class Constraints:
 
 
 def constraints_of(
-    segments: npt.ArrayLike | None, domain: Domain | None, labels: npt.ArrayLike | None, m: int
+    segments: npt.ArrayLike | None,
+    domain: Domain | None,
+    labels: npt.ArrayLike | None,
+    m: int,
+    within: float | None = None,
 ) -> Constraints:
     """Validate what can be validated without the mesh.
 
     Raises:
         ShapeError, CoordinateError, NonFiniteError: arrays that are none.
         PSLGError: segments of the domain that name no point or have no length.
-        ChoiceError: an unknown rule.
+        ChoiceError: an unknown rule, or a distance without a domain.
+        BoundError: a distance that is negative, or no number.
     """
+    if within is not None and domain is None:
+        raise ChoiceError("within is a distance from a domain; give domain=")
     return Constraints(
         None if segments is None else index_pairs(segments),
         None if domain is None else _outline(domain),
         None if labels is None else _labels(labels, m),
+        _within(within),
     )
+
+
+def _within(within: float | None) -> float | None:
+    given: object = within
+    if given is None:
+        return None
+    if not isinstance(given, (int, float, np.integer, np.floating)) or isinstance(given, bool) or not given >= 0:
+        raise BoundError(f"within is a distance, 0 or more, not {shown(given)}")
+    return float(given)
 
 
 def _labels(labels: npt.ArrayLike, m: int) -> FloatArray:

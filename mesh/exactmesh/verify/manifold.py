@@ -4,48 +4,42 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.jit import jit
+from exactmesh.verify.cells import Cells
 from exactmesh.verify.links import _LOW, BOUNDARY, CROWDED, REPEATED, Links, ends_of, slot_of, slots_of
 from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.pairs import rows_listing, unlinked_rows
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.report import WITNESSES, Finding, Violation
-from exactmesh.verify.witness import IndexArray, finding_of, point_name, rows_at_vertices, rows_of_triangles
+from exactmesh.verify.witness import IndexArray, finding_of, point_name
 
 __all__ = ["check_edges", "check_fans", "fans_finding", "repeated_edges"]
 
 _CHUNK = 1 << 20
 
 
-def repeated_edges(mesh: Mesh, links: Links, property_: Property, kind: Kind, fault: str) -> Finding:
-    """Return a violation for each directed edge that occurs more than once."""
+def repeated_edges(mesh: Mesh, cells: Cells, links: Links, property_: Property, kind: Kind, fault: str) -> Finding:
+    """Return a violation for each directed edge that occurs more than once; ``links`` are those of the cells."""
     if not (links.kinds == REPEATED).any():
         return Finding(Verdict.HOLDS)
     v, b, _ = ends_of(links, slots_of(links, REPEATED))
     edges = np.unique(np.stack([v, b], axis=1), axis=0)
-    told = edges[:WITNESSES].tolist()
-    triples = [[(v, b, c) for c in _third_corners(links, v, b)] for v, b in told]
-    rows = iter(
-        rows_of_triangles(
-            mesh.triangles, [corners for group in triples for corners in group], len(mesh.points), mesh.quads
-        )
-    )
-    violations = []
-    for (v, b), group in zip(told, triples, strict=True):
-        found = tuple(sorted({row for _ in group for row in next(rows)}))
+    rows = rows_listing(cells, edges[:WITNESSES], len(mesh.points))
+
+    def describe(i: int) -> Violation:
+        v, b = edges[i].tolist()
+        first, second, *others = rows[i]
+        more = f" and {len(others)} more" if others else ""
         name = f"the edge from {point_name(mesh.points, v)} to {point_name(mesh.points, b)}"
-        message = f"{mesh.noun}s {', '.join(map(str, found))} lie on one side of {name}: {fault}"
-        violations.append(Violation(property_, kind, found, (v, b), message))
-    return Finding(Verdict.FAILS, len(edges), tuple(violations))
+        message = f"{mesh.noun}s {first}, {second}{more} lie on one side of {name}: {fault}"
+        return Violation(property_, kind, (first, second), (v, b), message)
+
+    return finding_of(np.arange(len(edges)), describe)
 
 
-def _third_corners(links: Links, v: int, b: int) -> list[int]:
-    """Return the different third corners of the triangles that list v -> b, the first few."""
-    bucket = links.slots[links.first[v] : links.last[v]]
-    return list(dict.fromkeys((bucket[bucket >> 32 == b][:WITNESSES] & _LOW).tolist()))
-
-
-def check_edges(mesh: Mesh, links: Links) -> Finding:
+def check_edges(mesh: Mesh, cells: Cells, links: Links) -> Finding:
     """EDGE_MANIFOLD."""
-    return repeated_edges(mesh, links, Property.EDGE_MANIFOLD, Kind.REPEATED_EDGE, "they list it in the same direction")
+    fault = "they list it in the same direction"
+    return repeated_edges(mesh, cells, links, Property.EDGE_MANIFOLD, Kind.REPEATED_EDGE, fault)
 
 
 @jit
@@ -77,22 +71,24 @@ def find_broken_fans(links: Links, r_begin: int, r_end: int, broken: npt.NDArray
         broken[v] = met < end - begin
 
 
-def check_fans(mesh: Mesh, links: Links) -> Finding:
+def check_fans(mesh: Mesh, cells: Cells, links: Links) -> Finding:
     """VERTEX_MANIFOLD by walking round every vertex. Linear time but for searching in the buckets."""
     broken = np.zeros(len(mesh.points), dtype=np.bool_)
     for begin in range(0, len(links.order), _CHUNK):
         find_broken_fans(links, begin, min(begin + _CHUNK, len(links.order)), broken)
-    return fans_finding(mesh, np.flatnonzero(broken))
+    return fans_finding(mesh, cells, np.flatnonzero(broken))
 
 
-def fans_finding(mesh: Mesh, broken: IndexArray) -> Finding:
-    """Return VERTEX_MANIFOLD, given the vertices round which the triangles do not form one fan."""
+def fans_finding(mesh: Mesh, cells: Cells, broken: IndexArray) -> Finding:
+    """Return VERTEX_MANIFOLD, given the vertices round which the cells do not form one fan."""
     if not broken.size:
         return Finding(Verdict.HOLDS)
-    rows = rows_at_vertices(mesh.triangles, broken[:WITNESSES], len(mesh.points), mesh.quads)
+    rows = unlinked_rows(cells, broken[:WITNESSES], len(mesh.points))
 
     def describe(v: int) -> Violation:
-        message = f"the {mesh.noun}s round {point_name(mesh.points, v)}, such as {rows[v]}, do not form one fan"
-        return Violation(Property.VERTEX_MANIFOLD, Kind.BROKEN_FAN, rows[v], (v,), message)
+        first, second = rows[v]
+        name = f"the {mesh.noun}s round {point_name(mesh.points, v)}"
+        message = f"{name} do not form one fan: {first} and {second} are not in one"
+        return Violation(Property.VERTEX_MANIFOLD, Kind.BROKEN_FAN, (first, second), (v,), message)
 
     return finding_of(broken, describe)

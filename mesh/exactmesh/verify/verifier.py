@@ -52,10 +52,11 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
+from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
 
-__all__ = ["verify"]
+__all__ = ["Extras", "Given", "of_mesh", "verify"]
 
 
 @overload
@@ -70,6 +71,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -87,6 +89,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -103,6 +106,7 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    within: float | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report:
@@ -128,6 +132,10 @@ def verify(
             of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
         max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
             positive where there is no bound.
+        within: how far the mesh may be from the domain, 0 to infinity: each segment may be a chain of edges ever
+            forward, all vertices of which are so near to it, and each corner may be so far from its point of the
+            domain. What is said of segments and of the domain is then said of the displaced ones, and
+            ``Report.distance`` says how far they are, exactly. None: not at all.
         claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
@@ -143,7 +151,7 @@ def verify(
         CoordinateError: a coordinate is not exactly a double.
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
-        BoundError: an angle outside of 0 to 180 degrees, an area that is no number or not positive.
+        BoundError: an angle outside of 0 to 180 degrees, an area or a distance that is none.
         ChoiceError: an unknown claim, rule or orientation, a claim about something that was not given, or one that
             has no meaning for quadrilaterals.
         AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
@@ -164,7 +172,7 @@ def verify(
     cells = Given(points, triangles, quads)
     extras = Extras(segments, domain, labels, orientation)
     if triangles is None and quads is None:
-        cells, extras = _of_mesh(points, extras)
+        cells, extras = of_mesh(points, extras)
     doubles = points_of(cast(npt.ArrayLike, cells.points))
     triples = index_triples(() if cells.triangles is None else cells.triangles)
     fours = index_quads(() if cells.quads is None else cells.quads)
@@ -179,7 +187,7 @@ def verify(
     claimed = claimed_properties(claims, asked, extras.usual)
     chosen = orientation_of(Orientation.CCW if extras.orientation is None else extras.orientation)
     decided = decided_properties(asked, claimed)
-    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triples) + len(fours))
+    constraints = constraints_of(extras.segments, extras.domain, extras.labels, len(triples) + len(fours), within)
     findings = {
         Property.FINITE: check_finite(doubles),
         Property.INDICES: check_indices(triples, fours, len(doubles)),
@@ -194,8 +202,18 @@ def verify(
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
     undecided = Finding(Verdict.UNDECIDED, because=failed)
+    checked = CheckedMesh(
+        doubles,
+        triples,
+        fours,
+        segments=constraints.segments,
+        labels=constraints.labels,
+        domain=constraints.outline,
+        bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area, within=within),
+        orientation=chosen,
+    )
     return Report(
-        findings={property_: findings.get(property_, undecided) for property_ in decided},
+        findings={property_: with_numbers(findings.get(property_, undecided), checked) for property_ in decided},
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
@@ -204,16 +222,7 @@ def verify(
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
         },
-        mesh=CheckedMesh(
-            doubles,
-            triples,
-            fours,
-            segments=constraints.segments,
-            labels=constraints.labels,
-            domain=constraints.outline,
-            bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area),
-            orientation=chosen,
-        ),
+        mesh=checked,
     )
 
 
@@ -235,7 +244,7 @@ class Extras(NamedTuple):
     usual: tuple[Property, ...] | None = None
 
 
-def _of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
+def of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
     """Return the arrays of a mesh of some package, and what comes with it, unless something else was given."""
     from exactmesh.adapters import given_mesh  # arrays need none of it
 
@@ -281,7 +290,7 @@ def check_mesh(
     cells = upright_cells(mesh, shapes)
     listed = cells if orientation is Orientation.ANY else Cells(mesh.triangles, mesh.quads)
     proper = proper_cells(cells, shapes)
-    tiling = tiled(mesh, shapes, _links(mesh, proper, local))
+    tiling = tiled(mesh, shapes, cells, _links(mesh, proper, local))
     links = tiling.links if listed.are(proper) else _links(mesh, listed, local)
     upright, unused = cells.triangles, unused_points(links)
     findings = {
@@ -290,8 +299,8 @@ def check_mesh(
         ),
         Property.CONVEX: check_convex(mesh, shapes),
         Property.ALL_POINTS_USED: check_used(mesh, unused),
-        Property.EDGE_MANIFOLD: check_edges(mesh, links),
-        Property.VERTEX_MANIFOLD: _fans(mesh, links, tiling),
+        Property.EDGE_MANIFOLD: check_edges(mesh, listed, links),
+        Property.VERTEX_MANIFOLD: _fans(mesh, listed, links, tiling),
         Property.ADMISSIBLE: tiling.admissible,
         Property.WEAKLY_ACUTE: check_angles(mesh, shapes, Property.WEAKLY_ACUTE),
         Property.ACUTE: check_angles(mesh, shapes, Property.ACUTE),
@@ -347,26 +356,26 @@ def _links(mesh: Mesh, cells: Cells, local: Local) -> Links:
     return linked(len(mesh.points), mesh.context, local)
 
 
-def tiled(mesh: Mesh, shapes: Shapes, links: Links) -> Tiling:
+def tiled(mesh: Mesh, shapes: Shapes, cells: Cells, links: Links) -> Tiling:
     """Decide ADMISSIBLE: triangles without area and quadrilaterals that are not convex, then edges with two cells on a
     side, then the boundary."""
     improper = joined((check_zero_area(mesh, shapes), check_convex(mesh, shapes, Property.ADMISSIBLE)))
-    for finding in (improper, check_overlap(mesh, links)):
+    for finding in (improper, check_overlap(mesh, cells, links)):
         if finding.verdict is Verdict.FAILS:
             return Tiling(links, replace(finding, lower_bound=True), None, None)
     boundary = boundary_of(links)
     cycle = convex_cycle(mesh, boundary)
-    admissible = Finding(Verdict.HOLDS) if cycle is not None else check_sweep(mesh, boundary)
+    admissible = Finding(Verdict.HOLDS) if cycle is not None else check_sweep(mesh, cells, boundary)
     return Tiling(links, admissible, boundary, cycle)
 
 
-def _fans(mesh: Mesh, links: Links, tiling: Tiling) -> Finding:
+def _fans(mesh: Mesh, cells: Cells, links: Links, tiling: Tiling) -> Finding:
     """VERTEX_MANIFOLD: admissible triangles that close round a vertex leave no room for more, so two fans are
     open ones, and each begins with an edge of the boundary. Otherwise every vertex is walked round."""
     boundary = tiling.boundary
     if links is not tiling.links or boundary is None or tiling.admissible.verdict is not Verdict.HOLDS:
-        return check_fans(mesh, links)
-    return fans_finding(mesh, np.unique(boundary.origin[1:][boundary.origin[1:] == boundary.origin[:-1]]))
+        return check_fans(mesh, cells, links)
+    return fans_finding(mesh, cells, np.unique(boundary.origin[1:][boundary.origin[1:] == boundary.origin[:-1]]))
 
 
 def _against_points(mesh: Mesh, shapes: Shapes, tiling: Tiling, unused: IndexArray) -> dict[Property, Finding]:
