@@ -5,6 +5,7 @@
 True
 """
 
+from exactmesh.conformance.assertions import assert_admissible, assert_constrained_delaunay, assert_delaunay
 from exactmesh.conformance.checking import DEADLINE, MAX_EXAMPLES, MAX_SIZE, check, retry
 from exactmesh.conformance.corpus import BUNDLES, CORPUS, Case, case_named
 from exactmesh.conformance.given import Given, Trait
@@ -34,6 +35,9 @@ __all__ = [
     "Ruling",
     "Task",
     "Trait",
+    "assert_admissible",
+    "assert_constrained_delaunay",
+    "assert_delaunay",
     "case_named",
     "check",
     "loaded",

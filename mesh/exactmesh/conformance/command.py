@@ -48,6 +48,10 @@ def conformance(
     allow_rounding: Annotated[
         bool, typer.Option("--allow-rounding", help="Exit with 0 if laws are broken by rounding only.")
     ] = False,
+    all_: Annotated[bool, typer.Option("--all", help="All known meshers: write the scoreboard, in Markdown.")] = False,
+    output: Annotated[
+        str | None, typer.Option("-o", "--output", metavar="FILE", help="Where the scoreboard goes; default: printed.")
+    ] = None,
     list_: Annotated[bool, typer.Option("--list", help="List the known meshers and the corpus.")] = False,
 ) -> None:
     """Hunt the bugs of MESHER: exit code 0 if every law holds, 1 if not.
@@ -59,6 +63,9 @@ def conformance(
     console = Console(highlight=False)
     if list_:
         _list(console)
+        return
+    if all_:
+        _write_scoreboard(output, deadline, timeout, seed)
         return
     if mesher is None:
         raise typer.BadParameter("which mesher? (--list names those that are known)", param_hint="MESHER")
@@ -122,6 +129,21 @@ def _retried(mesher: str, task: "Task", text: str, timeout: float, orientation: 
     return retry(
         mesher, given.points, given.segments, kind=task, source=source, timeout=timeout, orientation=orientation
     )
+
+
+def _write_scoreboard(path: str | None, deadline: float, timeout: float, seed: int) -> None:
+    from exactmesh.conformance.scoreboard import scoreboard
+
+    def tell(what: str) -> None:
+        typer.echo(what, err=True)
+
+    page = scoreboard(deadline=deadline, timeout=timeout, seed=seed, tell=tell)
+    if path is None:
+        typer.echo(page, nl=False)
+        return
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(page)
+    typer.echo(path)
 
 
 def _list(console: "Console") -> None:
