@@ -5,6 +5,7 @@ from math import isqrt
 from random import Random
 
 import numpy as np
+import pytest
 from proofs_tests import oracles
 from proofs_tests.corrupted_oracle import Area, Case, Truth
 from proofs_tests.test_verify_constrained import Plain

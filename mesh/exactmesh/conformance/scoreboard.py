@@ -109,8 +109,8 @@ def _examples(result: Conformance) -> Iterator[str]:
         if example is not None:
             said = f"- `{law}` {ruling.outcome}: {_plain(example.sentence)}"
             seen.setdefault(example.given.key, (example, []))[1].append(said)
-    for example, said in seen.values():
-        yield "\n".join([*said, "", "```sh", example.command, "```", ""])
+    for example, lines in seen.values():
+        yield "\n".join([*lines, "", "```sh", example.command, "```", ""])
 
 
 def _plain(sentence: str) -> str:
