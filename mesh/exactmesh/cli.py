@@ -13,6 +13,7 @@ import typer
 
 from exactmesh import __version__
 from exactmesh.cli_arguments import carve_rule, require_file
+from exactmesh.conformance.command import conformance
 from exactmesh.triangulate_command import triangulate
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def _common(
 
 
 app.command()(triangulate)
+app.command()(conformance)
 
 
 @app.command()
