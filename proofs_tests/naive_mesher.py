@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from math import lcm
 
 Point = tuple[int, int]
@@ -31,7 +32,7 @@ def in_circle(a: Point, b: Point, c: Point, d: Point) -> int:
 def sweep(points: Sequence[Point], order: Sequence[int], side: Orient = orient) -> list[Triangle]:
     """Triangulate from left to right: each point is joined to the edges of the hull that it sees."""
     triangles: list[Triangle] = []
-    chain, hull = list(order[:1]), []
+    chain, hull = list(order[:1]), list(order[:0])
     for v in order[1:]:
         if not hull:  # all points so far lie on one line
             turn = side(points[chain[0]], points[chain[-1]], points[v]) if len(chain) > 1 else 0
@@ -39,7 +40,7 @@ def sweep(points: Sequence[Point], order: Sequence[int], side: Orient = orient) 
                 chain.append(v)
                 continue
             hull = [*chain, v] if turn > 0 else [*reversed(chain), v]
-            triangles += [(a, b, v) for a, b in zip(hull, hull[1:-1], strict=False)]
+            triangles += [(a, b, v) for a, b in pairwise(hull[:-1])]
             continue
         seen = [side(points[a], points[b], points[v]) < 0 for a, b in zip(hull, [*hull[1:], hull[0]], strict=True)]
         start = next((i for i in range(len(hull)) if seen[i] and not seen[i - 1]), None)
@@ -47,7 +48,7 @@ def sweep(points: Sequence[Point], order: Sequence[int], side: Orient = orient) 
             continue
         hull, seen = hull[start:] + hull[:start], seen[start:] + seen[:start]
         count = seen.index(False) if False in seen else len(seen) - 1
-        triangles += [(b, a, v) for a, b in zip(hull[:count], hull[1 : count + 1], strict=True)]
+        triangles += [(b, a, v) for a, b in pairwise(hull[: count + 1])]
         hull = [hull[0], v, *hull[count:]]
     return triangles
 
@@ -62,8 +63,10 @@ def flipped(
     queue = list(apex)
     while queue and most:
         a, b = queue.pop()
-        c, d = apex.get((a, b)), apex.get((b, a))
-        if c is None or d is None or inside(points[a], points[b], points[c], points[d]) <= 0:
+        if (a, b) not in apex or (b, a) not in apex:
+            continue
+        c, d = apex[a, b], apex[b, a]
+        if inside(points[a], points[b], points[c], points[d]) <= 0:
             continue
         del apex[a, b], apex[b, a]
         apex.update({(c, d): b, (d, b): c, (b, c): d, (d, c): a, (c, a): d, (a, d): c})

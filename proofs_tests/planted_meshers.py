@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
 from proofs_tests.naive_mesher import Point, Triangle, distinct, flipped, in_circle, mesh, on_integers, sweep
 
 Floats = npt.NDArray[np.float64]

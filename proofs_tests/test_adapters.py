@@ -129,6 +129,16 @@ class TestOwn:
         assert report.claims == DOMAIN_TRIANGULATION
         assert report.triangle_count == len(done.triangulation.triangles)
 
+    def test_a_refinement_is_as_far_from_its_domain_as_it_says(self) -> None:
+        done = refine(PSLG.from_rings([[(0, 0), (3, 0.1), (3.3, 2.9), (0.2, 3)]]), min_angle=25, max_area=0.1)
+        assert done.displacement_squared > 0
+        assert verify(done).ok
+        domain = done.triangulation.pslg
+        report = verify(done, domain=domain, within=done.displacement)
+        assert report.ok
+        assert report.distance_squared == done.displacement_squared
+        assert not verify(done, domain=domain).ok
+
     def test_labels(self) -> None:
         regions = PSLG(FRAME.points, FRAME.segments, holes=[(1.8, 1.5)], regions=[(0.5, 0.5, 7)])
         mesh = constrained_delaunay(regions)

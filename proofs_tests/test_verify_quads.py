@@ -119,6 +119,19 @@ class TestEverySmallSet:
             orientation = Orientation.ANY if i % 2 else Orientation.CCW
             assert not disagreements(points, chosen, orientation), (chosen, orientation)
 
+    @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
+    def test_cutting_convex_ones_changes_nothing(self, points: Points) -> None:
+        """Law: convex cells are admissible if and only if the triangles into which diagonals cut them are."""
+        exact, random = oracles.rationals(points), Random(2)
+        for chosen in some_sets(points, 60):
+            if all(cells_oracle.is_convex(exact, cell) for cell in chosen):
+                cut: list[Cell] = []
+                for cell in chosen:
+                    a, b, c, *rest = cell if random.random() < 0.5 else (*cell[1:], cell[0])
+                    cut += [(a, b, c), *((a, c, d) for d in rest)]
+                whole, halves = (checked(points, part, orientation="any") for part in (chosen, cut))
+                assert whole.verdict(Property.ADMISSIBLE) is halves.verdict(Property.ADMISSIBLE), chosen
+
     def test_brute_force_accepts_and_rejects_each_property(self) -> None:
         seen: dict[Property, set[bool]] = {}
         for points in CONFIGURATIONS.values():

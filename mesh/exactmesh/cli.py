@@ -132,6 +132,39 @@ def verify(
     raise typer.Exit(0 if report.ok else _VIOLATION)
 
 
+@app.command(name="check-certificate")
+def check_certificate(
+    certificate: Annotated[str, typer.Argument(metavar="CERT", help="What verify --json wrote.")],
+    mesh: _AnyMesh,
+    domain: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="What MESH should cover, if verify was told by --domain."),
+    ] = None,
+    again: Annotated[
+        bool, typer.Option("--again", help="Verify MESH once more, by the same claims, and compare the verdicts.")
+    ] = False,
+) -> None:
+    """Check that CERT is about MESH, bit by bit: exit code 0 if it is, 1 if not."""
+    require_file(certificate)
+    require_file(mesh)
+    from exactmesh.certificate_file import checked_certificate, said_of
+    from exactmesh.errors import CertificateError
+    from exactmesh.progress import working
+    from exactmesh.verify import read_certificate
+
+    with open(certificate, "rb") as stream:
+        try:
+            read = read_certificate(stream.read().decode())
+        except (CertificateError, UnicodeDecodeError) as error:
+            raise CertificateError(f"{certificate}: {error}") from None
+    content = _cells_of(mesh)
+    graph = None if domain is None else _domain_of(domain, None)[0]
+    with working(f"checking {mesh}"):
+        check = checked_certificate(read, content, graph, again=again)
+    typer.echo(said_of(check, certificate, mesh))
+    raise typer.Exit(0 if check else _VIOLATION)
+
+
 def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
     """Return the domain on file, and what its numbers count from."""
     rule = None if carve is None else carve_rule(carve)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AdapterError",
     "BoundError",
+    "CertificateError",
     "ChoiceError",
     "ClipError",
     "CollinearPointsError",
@@ -60,6 +61,10 @@ __all__ = [
 
 class AdapterError(ExactMeshError):
     """An object that is no mesh of triangles and quadrilaterals in the plane; ``indices`` are the culprits in it."""
+
+
+class CertificateError(ExactMeshError):
+    """What should be a certificate is none, or is about more than was given, or less."""
 
 
 class ChoiceError(ExactMeshError):

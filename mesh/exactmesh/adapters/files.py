@@ -79,6 +79,10 @@ def _read(path: str) -> "meshio.Mesh":
             return meshio.read(path)
     except MemoryError:
         raise
+    except ImportError as error:
+        raise FileFormatError(
+            f"meshio needs {error.name} for this format: pip install {error.name}", path=path
+        ) from None
     except (Exception, SystemExit) as error:  # a broken file may make a reader raise anything
         why = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
         raise FileFormatError(f"meshio cannot read it: {why}", path=path) from None

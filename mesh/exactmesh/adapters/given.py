@@ -125,4 +125,5 @@ def index_rows(rows: object, width: int, what: str) -> Indices:
         return no_pairs(width)
     if array.ndim != 2 or array.shape[1] < width or array.dtype.kind not in "iu":
         raise ShapeError(f"{what} has shape {array.shape} and dtype {array.dtype}; expected integers (m, {width})")
-    return array[:, :width]
+    signed = array.astype(np.int64) if array.dtype == np.uint64 else array  # beside others, numpy would make it float
+    return signed[:, :width]

@@ -44,7 +44,8 @@ def accepts(mesh: object) -> bool:
 
 
 def convert(mesh: object) -> GivenMesh:
-    """Return the arrays, and the domain that they should cover."""
+    """Return the arrays, and the domain that they should cover: what the object says that it covers, so that of a
+    refinement it is the displaced one."""
     if isinstance(mesh, GivenMesh):
         return mesh
     if is_a(mesh, "exactmesh", "Refinement"):

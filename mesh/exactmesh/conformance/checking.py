@@ -137,9 +137,7 @@ def retry(
     return Conformance(name, task, _rulings(name, task, trial, evidence), trial.tried, process.restarts, True)
 
 
-def _rulings(
-    name: str, task: Task, trial: Trial, evidence: Mapping[Law, Evidence | None]
-) -> dict[Law, Ruling]:
+def _rulings(name: str, task: Task, trial: Trial, evidence: Mapping[Law, Evidence | None]) -> dict[Law, Ruling]:
     silent = evidence.get(Behaviour.ANSWERS)
     rulings: dict[Law, Ruling] = {}
     for law, found in evidence.items():

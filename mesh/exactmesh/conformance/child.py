@@ -108,6 +108,8 @@ def _plain(result: Any) -> dict[str, Any]:
 
 
 def _adapted(result: object) -> dict[str, Any]:
+    if result is None:
+        raise _NoMeshError("it returned None")
     from exactmesh.adapters import given_mesh  # only here: it takes half a second
 
     mesh = given_mesh(result)
@@ -116,7 +118,7 @@ def _adapted(result: object) -> dict[str, Any]:
     return {
         "points": _positions(mesh.points),
         "triangles": _integers(mesh.triangles, "triangles", 3),
-        "orientation": None if mesh.orientation is None else str(mesh.orientation),
+        "orientation": str(mesh.orientation),
     }
 
 
@@ -147,8 +149,8 @@ def _limit(memory: int) -> None:
 
 def _alarm(seconds: float) -> None:
     """End this process if it still works when nobody waits any longer, whatever code it is in."""
-    if hasattr(signal, "alarm"):
-        signal.alarm(int(seconds) + _GRACE if seconds else 0)
+    if sys.platform != "win32":  # where an orphan goes on
+        signal.alarm(int(seconds) + _GRACE if seconds > 0 else 0)
 
 
 def main() -> None:

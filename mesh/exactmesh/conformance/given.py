@@ -27,9 +27,11 @@ class Trait(StrEnum):
     """Several points at one position: any one of them may stand for all."""
     EXTREME = "extreme"
     """A coordinate beyond 2^250, or below 2^-250 and not 0: its fourth power, as incircle has it, is no double."""
+    OVERLAP = "overlap"
+    """Segments that run along each other."""
     CROSSING = "crossing"
-    """Segments that cross or overlap: there is no triangulation of these points with these segments, so an exception is
-    an answer; if there are triangles, they tile the hull without overlap."""
+    """Segments that cross: there is no triangulation of these points with these segments, and an exception is an
+    answer; but if there are triangles, they do not overlap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +89,6 @@ class Given:
             found.add(Trait.EXTREME)
         if self.segments is not None and len(self.segments):
             kinds = find_crossings(self.points, self.segments).kinds
-            if (kinds != Meeting.TOUCH).any():
-                found.add(Trait.CROSSING)
+            met = {Meeting.CROSSING: Trait.CROSSING, Meeting.OVERLAP: Trait.OVERLAP}
+            found.update(trait for meeting, trait in met.items() if (kinds == meeting).any())
         return frozenset(found)

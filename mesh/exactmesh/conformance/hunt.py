@@ -18,7 +18,9 @@ _PATIENCE = 3  # times that a mesher may hang in one family: each takes as long 
 _SHRUNK = 3  # pieces of evidence for one law that are shrunk, the smallest ones
 
 
-def _find(strategy: SearchStrategy[Given], wanted: Callable[[Given], bool], max_examples: int, seed: int) -> Given | None:
+def _find(
+    strategy: SearchStrategy[Given], wanted: Callable[[Given], bool], max_examples: int, seed: int
+) -> Given | None:
     """Return the smallest input that is wanted, as far as hypothesis can shrink; the same inputs for the same seed."""
     chosen = settings(
         max_examples=max_examples,
@@ -65,9 +67,6 @@ def smallest(
     def breaks(given: Given) -> bool:
         return trial.outcome(given, law) is outcome
 
-    def still(given: Given) -> bool:
-        return trial.is_legal(given) and breaks(given)
-
     budget = trial.clock
     seeking = [family for family in dict.fromkeys(evidence.source for evidence in found) if family in sources][:_SHRUNK]
     for step, family in enumerate(seeking):
@@ -75,5 +74,5 @@ def smallest(
         _find(sources[family], breaks, max_examples, seed)
     for step, evidence in enumerate(trial.worst(law)[:_SHRUNK]):
         trial.begin(evidence.source, budget.part(1 / (_SHRUNK - step)))
-        reduced(evidence.given, still)
+        reduced(evidence.given, trial.is_legal, breaks)
     return trial.worst(law)[0]

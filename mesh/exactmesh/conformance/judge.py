@@ -44,7 +44,7 @@ def check_legal(task: Task, given: Given) -> None:
         ExactMeshError: coordinates that are not finite, segments that name no point, for ``DOMAIN`` none that enclose
             anything, and so on; the message names the culprits.
     """
-    pslg = PSLG(given.points, () if given.segments is None else given.segments, rule=Carve.EVEN_ODD)
+    pslg = _domain(given)
     if task is Task.DOMAIN:
         verify(given.points, (), domain=pslg)
 
@@ -55,22 +55,24 @@ def judged(task: Task, given: Given, answer: Answer, orientation: str) -> Judgem
     A law is missing where the input has no bearing on it, or where the verifier leaves it undecided because of another
     one that is broken.
     """
-    excused = answer.fate is Fate.REFUSED and given.traits & {Trait.FLAT, Trait.CROSSING}
     if answer.fate is not Fate.ANSWERED:
+        excused = answer.fate is Fate.REFUSED and _has_no_triangulation(task, given)
         return {Behaviour.ANSWERS: None if excused else Fault(_FATES[answer.fate], answer.message)}
     faults: dict[Law, Fault | None] = dict.fromkeys(Behaviour)
     if not answer.kept:
         faults[Behaviour.KEEPS_INPUT] = Fault(Outcome.WRONG, "the arrays that were given have other values afterwards")
     if not answer.repeats:
-        faults[Behaviour.REPEATABLE] = Fault(Outcome.WRONG, "the second answer to the same input differs from the first")
+        faults[Behaviour.REPEATABLE] = Fault(
+            Outcome.WRONG, "the second answer to the same input differs from the first"
+        )
     mesh = assembled(given, answer)
     report = _report(task, given, mesh, answer.orientation or orientation)
-    laws = _ALWAYS if given.traits & {Trait.FLAT, Trait.CROSSING} else LAWS[task]
+    laws = _laws(task, given)
     for law in laws:
         if isinstance(law, Property) and law in report.findings:
             finding = report.findings[law]
             if finding.verdict is not Verdict.UNDECIDED:
-                faults[law] = fault_of(finding)
+                faults[law] = _fault_of(finding)
     if Trait.CROSSING not in given.traits:
         faults[Property.NO_NEW_POINTS] = _invented(mesh)
     if Property.ALL_POINTS_USED in laws and report.verdict(Property.INDICES) is Verdict.HOLDS:
@@ -78,14 +80,32 @@ def judged(task: Task, given: Given, answer: Answer, orientation: str) -> Judgem
     return faults
 
 
-def fault_of(finding: Finding) -> Fault | None:
-    """Return what the verifier found, and how bad that is; a violation that is wrong is told first."""
+def _domain(given: Given) -> PSLG:
+    return PSLG(given.points, () if given.segments is None else given.segments, rule=Carve.EVEN_ODD)
+
+
+def _has_no_triangulation(task: Task, given: Given) -> bool:
+    """Tell whether there are no triangles to be had, or none with these points and segments: an exception says so."""
+    if given.traits & {Trait.FLAT, Trait.CROSSING}:
+        return True
+    if task is not Task.DOMAIN:
+        return False
+    empty = verify(given.points, (), domain=_domain(given))
+    return empty.verdict(Property.COVERS_DOMAIN) is Verdict.HOLDS
+
+
+def _laws(task: Task, given: Given) -> tuple[Law, ...]:
+    """Return the laws on which the input has a bearing."""
+    return _ALWAYS if given.traits & {Trait.FLAT, Trait.CROSSING} else LAWS[task]
+
+
+def _fault_of(finding: Finding) -> Fault | None:
+    """Return what the verifier found, the worst of it first."""
     if finding.verdict is Verdict.HOLDS:
         return None
-    wrong = [violation for violation in finding.violations if violation.severity is Severity.WRONG]
-    told = (wrong or finding.violations)[0].message
-    rounding = not wrong and finding.count == len(finding.violations)
-    return Fault(Outcome.ROUNDING if rounding else Outcome.WRONG, told)
+    rounding = finding.severity is Severity.ROUNDING
+    worst = [violation for violation in finding.violations if rounding or violation.severity is Severity.WRONG]
+    return Fault(Outcome.ROUNDING if rounding else Outcome.WRONG, (worst or finding.violations)[0].message)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +128,8 @@ class Assembled:
 def assembled(given: Given, answer: Answer) -> Assembled:
     """Return the mesh in the indices of the input: a mesher may return points of its own. O(n + m)."""
     assert answer.triangles is not None
-    points, triangles, invented = given.points, answer.triangles, ()
+    points, triangles = given.points, answer.triangles
+    invented: tuple[int, ...] = ()
     if answer.points is not None and not np.array_equal(answer.points, given.points):
         points, triangles, invented = _matched(given.points, answer.points, answer.triangles)
     return Assembled(points, triangles, _between_corners(given, triangles), invented)
@@ -166,7 +187,7 @@ def _position(points: FloatArray, index: int) -> tuple[float, float]:
 
 def _report(task: Task, given: Given, mesh: Assembled, orientation: str) -> Report:
     if task is Task.DOMAIN and Trait.CROSSING not in given.traits:
-        domain = PSLG(given.points, () if given.segments is None else given.segments, rule=Carve.EVEN_ODD)
+        domain = _domain(given)
         return verify(mesh.points, mesh.triangles, domain=domain, orientation=orientation)
     if task is Task.SEGMENTS and Trait.CROSSING not in given.traits:
         return verify(mesh.points, mesh.triangles, segments=mesh.segments, orientation=orientation)

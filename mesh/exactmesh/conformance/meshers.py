@@ -90,7 +90,9 @@ def meshpy_segments(points: Floats, segments: Integers) -> Mesh:
 def geos_points(points: Floats) -> Mesh:
     import shapely
 
-    corners = [triangle.exterior.coords[:3] for triangle in shapely.delaunay_triangles(shapely.multipoints(points)).geoms]
+    corners = [
+        triangle.exterior.coords[:3] for triangle in shapely.delaunay_triangles(shapely.multipoints(points)).geoms
+    ]
     return _triangles_of(np.array(corners, dtype=np.float64).reshape(-1, 2))
 
 
@@ -143,7 +145,8 @@ def _cdt(points: Floats, segments: Integers | None, erase: str) -> Mesh:
         edges: Any = np.ascontiguousarray(segments, dtype=np.uint32)
         mesh.insert_edges(edges)
     getattr(mesh, erase)()
-    return np.array(mesh.vertices_array()), np.array(mesh.triangles_array()["vertices"], dtype=np.int64)
+    made = mesh.vertices_array()
+    return np.column_stack([made["x"], made["y"]]), np.array(mesh.triangles_array()["vertices"], dtype=np.int64)
 
 
 def cdt_points(points: Floats) -> Mesh:

@@ -90,7 +90,7 @@ class MesherProcess:
         MesherError: the mesher cannot be imported, or this already is such a process.
     """
 
-    def __init__(self, reference: str, limits: Limits = Limits(), *, segments: bool = False) -> None:  # noqa: B008
+    def __init__(self, reference: str, limits: Limits = Limits(), *, segments: bool = False) -> None:
         if os.environ.get(IN_CHILD):
             raise MesherError(
                 "the mesher's own process asks for its conformance: put the call under if __name__ == '__main__'"
@@ -104,7 +104,9 @@ class MesherProcess:
     def __enter__(self) -> "MesherProcess":
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.close()
 
     def warm_up(self) -> None:

@@ -11,18 +11,20 @@ __all__ = ["reduced"]
 _DIGITS = (0, 1, 2, 3, 4, 6, 8, 12)  # decimals that are tried
 
 
-def reduced(given: Given, still: Callable[[Given], bool]) -> Given:
+def reduced(given: Given, is_legal: Callable[[Given], bool], still: Callable[[Given], bool]) -> Given:
     """Return an input on which ``still`` holds, from which no single step leads to a smaller one.
 
     A step leaves out segments or points (half of them, a quarter, ... one), moves all points to the origin, or rounds
-    coordinates, all or one. ``still`` is called for smaller inputs only, whose traits the given one has, too; if it
-    answers False to everything, as when a budget is spent, the search ends soon.
+    coordinates, all or one. ``still`` is called for smaller legal inputs only, whose traits the given one has, too; if
+    it answers False to everything, as when a budget is spent, the search ends soon.
     """
     best = given
 
     def accept(candidate: Given) -> bool:
         nonlocal best
-        if candidate.size >= best.size or not candidate.traits <= given.traits or not still(candidate):
+        if not is_legal(candidate) or candidate.size >= best.size:
+            return False
+        if not candidate.traits <= given.traits or not still(candidate):
             return False
         best = candidate
         return True

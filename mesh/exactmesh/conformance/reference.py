@@ -42,7 +42,7 @@ def reference_of(mesher: Callable[..., object]) -> str:
         MesherError: there is none: it is a lambda, was defined within a function or at a prompt.
     """
     module, name = getattr(mesher, "__module__", None), getattr(mesher, "__qualname__", None)
-    if not callable(mesher) or not module or not name:
+    if not module or not name:
         raise MesherError(f"{mesher!r} is no function that another process could import")
     place = module
     if module == "__main__":

@@ -49,7 +49,7 @@ def _document(report: Report, mesh: CheckedMesh, payload: Payload, heading: str)
     yield f"<title>{escape(heading)}</title>\n<style>\n{_file('style.css')}</style>\n</head>\n<body>\n"
     yield from _aside(report, mesh, heading)
     yield _file("stage.html")
-    yield f'<script type="application/json" id="report">{_json(report, mesh, payload)}</script>\n'
+    yield f'<script type="application/json" id="report">{_json(report, payload)}</script>\n'
     for name, array in payload.arrays.items():
         yield f'<script type="text/plain" id="{name}">{packed(array) if len(array) else ""}</script>\n'
     yield '<script>\n(() => {\n"use strict";\n'
@@ -61,12 +61,12 @@ def _file(name: str) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def _json(report: Report, mesh: CheckedMesh, payload: Payload) -> str:
+def _json(report: Report, payload: Payload) -> str:
     document = {
         "exponent": payload.exponent,
         "arrays": {name: len(array) for name, array in payload.arrays.items()},
         "properties": properties_of(report),
-        "violations": places_of(report, mesh, payload),
+        "violations": places_of(report, payload),
     }
     text = json.dumps(document, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
     return text.replace("<", "\\u003c")  # nothing in it ends the script

@@ -130,14 +130,14 @@ class Panel {
 
   vertex({ vertex, decimal, hex }) {
     const name = vertex === null ? "·" : String(vertex);
-    const flies = vertex !== null && decimal.length;
+    const flies = vertex !== null && decimal !== null;
     const go = { class: "go", type: "button", title: "go nearer to this vertex", "aria-label": `go nearer to vertex ${name}`, onclick: () => this.viewer.approach(vertex) };
     return element(
       "tr",
       {},
       element("th", { scope: "row" }, flies ? element("button", go, name) : name),
       ...[0, 1].map((axis) =>
-        element("td", { title: hex[axis] ?? "" }, element("span", {}, decimal[axis] ?? "no such point"), element("span", { class: "hex" }, hex[axis] ?? "")),
+        element("td", {}, element("span", {}, decimal?.[axis] ?? "no such point"), element("span", { class: "hex" }, hex?.[axis] ?? "")),
       ),
     );
   }

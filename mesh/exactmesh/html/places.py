@@ -1,11 +1,11 @@
 """The failing places, as the page lists, marks and draws them."""
 
 import math
-
-import numpy as np
+from collections.abc import Sequence
 
 from exactmesh.html.payload import Payload
-from exactmesh.verify import CheckedMesh, Kind, Property, Report, Severity, Violation
+from exactmesh.verify import Kind, Property, Report, Severity, Violation
+from exactmesh.verify.document import numbered_positions, position, violation_document
 from exactmesh.verify.witness import approximately
 
 __all__ = ["places_of", "properties_of"]
@@ -44,7 +44,7 @@ def _gravity(property_: Property) -> int:
     return _GRAVEST.index(property_) if property_ in _GRAVEST else len(_GRAVEST) + list(Property).index(property_)
 
 
-def places_of(report: Report, mesh: CheckedMesh, payload: Payload) -> list[dict[str, object]]:
+def places_of(report: Report, payload: Payload) -> list[dict[str, object]]:
     """Return the violations: of claimed properties first, wrong before rounding-sized."""
     ordered = sorted(
         report.violations,
@@ -54,51 +54,33 @@ def places_of(report: Report, mesh: CheckedMesh, payload: Payload) -> list[dict[
             _gravity(violation.property),
         ),
     )
-    return [{"index": i, **_place(violation, mesh, payload)} for i, violation in enumerate(ordered)]
+    return [{"index": i, **_place(violation, payload)} for i, violation in enumerate(ordered)]
 
 
-def _place(violation: Violation, mesh: CheckedMesh, payload: Payload) -> dict[str, object]:
-    inside = [v for v in violation.vertices if 0 <= v < len(mesh.points)]
-    corners = {v for t in violation.triangles for v in _corners(mesh, t) if 0 <= v < len(mesh.points)}
-    positions = mesh.points[sorted(corners | set(inside))]
-    degrees = {} if violation.degrees is None else {"degrees": violation.degrees}
+def _place(violation: Violation, payload: Payload) -> dict[str, object]:
+    point_of = dict(zip(violation.indices, numbered_positions(violation), strict=True))
+    others: list[dict[str, object]] = [{"vertex": None, **position(*place)} for place in violation.places]
+    there = [v for v in violation.vertices if 0 <= v < violation.point_count]
     magnitude = violation.magnitude
     return {
+        **violation_document(violation),
         "property": violation.property.value,
-        "kind": violation.kind.value,
-        "severity": violation.severity.value,
-        "message": violation.message,
-        "triangles": list(violation.triangles),
-        "vertices": list(violation.vertices),
-        "sign": None if violation.sign is None else int(violation.sign),
-        "magnitude": None if magnitude is None else f"{magnitude.numerator}/{magnitude.denominator}",
         "approximately": None if magnitude is None else approximately(magnitude),
-        **degrees,
-        "points": [_numbers(v, mesh) for v in violation.vertices],
-        "places": [],
-        "box": _box(positions, payload),
-        "lines": _lines(violation.kind, tuple(inside)),
-        "circles": _circles(violation.kind, tuple(inside)),
+        "points": [*(point_of[v] for v in violation.vertices), *others],
+        "places": [[payload.scaled(z) for z in place] for place in violation.places],
+        "box": _box((*violation.points, *violation.places), payload),
+        "lines": _lines(violation.kind, tuple(there)),
+        "circles": _circles(violation.kind, tuple(there)),
     }
 
 
-def _corners(mesh: CheckedMesh, cell: int) -> list[int]:
-    m = len(mesh.triangles)
-    corners: list[int] = (mesh.triangles[cell] if cell < m else mesh.quads[cell - m]).tolist()
-    return corners
-
-
-def _numbers(v: int, mesh: CheckedMesh) -> dict[str, object]:
-    position = mesh.points[v].tolist() if 0 <= v < len(mesh.points) else []
-    return {"vertex": v, "decimal": [repr(z) for z in position], "hex": [z.hex() for z in position]}
-
-
-def _box(positions: "np.ndarray[tuple[int, int], np.dtype[np.float64]]", payload: Payload) -> list[float] | None:
-    finite = positions[np.isfinite(positions).all(axis=1)]
-    if not len(finite):
+def _box(points: Sequence[tuple[float, float]], payload: Payload) -> list[float] | None:
+    """Return west, south, east, north of what is finite."""
+    finite = [point for point in points if all(map(math.isfinite, point))]
+    if not finite:
         return None
-    box = [*finite.min(axis=0).tolist(), *finite.max(axis=0).tolist()]
-    return [payload.scaled(z) for z in box if math.isfinite(z)]
+    x, y = zip(*finite, strict=True)
+    return [payload.scaled(z) for z in (min(x), min(y), max(x), max(y))]
 
 
 def _lines(kind: Kind, vertices: tuple[int, ...]) -> list[tuple[int, int]]:

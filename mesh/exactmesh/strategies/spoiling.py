@@ -84,7 +84,7 @@ class Spoiler:
                 i = t.index(v)
                 after[t[(i + 1) % 3]] = (row, t[(i + 2) % 3])
         starts = set(after) - {w for _, w in after.values()}
-        w = min(starts or after)
+        w = min(starts or after, default=v)
         rows = []
         for _ in after:
             row, w = after[w]

@@ -19,6 +19,7 @@
   incircle: not called
 """
 
+from exactmesh.verify.certificate import Certificate, CertificateCheck, check_certificate, read_certificate
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import (
@@ -35,6 +36,7 @@ from exactmesh.verify.properties import (
     Verdict,
 )
 from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, VerificationError, Violation
+from exactmesh.verify.submesh import Submesh
 from exactmesh.verify.verifier import verify
 
 __all__ = [
@@ -45,6 +47,8 @@ __all__ = [
     "DOMAIN_TRIANGULATION",
     "FORMAT",
     "WITNESSES",
+    "Certificate",
+    "CertificateCheck",
     "CheckedMesh",
     "ChoiceError",
     "Domain",
@@ -54,8 +58,11 @@ __all__ = [
     "Property",
     "Report",
     "Severity",
+    "Submesh",
     "Verdict",
     "VerificationError",
     "Violation",
+    "check_certificate",
+    "read_certificate",
     "verify",
 ]

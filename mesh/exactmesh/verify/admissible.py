@@ -68,7 +68,7 @@ def check_sweep(mesh: Mesh, cells: Cells, boundary: Boundary) -> Finding:
     fault, edges = _swept(mesh, boundary, vertices, points)
     if fault == PROPER:
         return Finding(Verdict.HOLDS)
-    (first,), (second,) = rows_listing(cells, np.array(edges), len(mesh.points))
+    first, second = (rows[0] for rows in rows_listing(cells, np.array(edges), len(mesh.points)))
     if fault == COVERED_TWICE:
         first = overlapping_row(mesh, cells, second)
     violation = _meeting(mesh, cells, (min(first, second), max(first, second)))

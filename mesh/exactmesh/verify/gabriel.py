@@ -87,7 +87,7 @@ def check_gabriel(mesh: Mesh, links: Links, marks: Marks, missing: tuple[Propert
     corners = np.stack(ends_of(links, slots), axis=1)
     ranking = rank_diametral(mesh, corners)
     found = rows_of_triangles(mesh.triangles, [*map(tuple, corners[ranking.order].tolist())], len(mesh.points))
-    rows = dict(zip(ranking.order.tolist(), found, strict=True))
+    rows = {i: rows[:1] for i, rows in zip(ranking.order.tolist(), found, strict=True)}
 
     def describe(i: int) -> Violation:
         v, b, c = corners[i].tolist()

@@ -82,10 +82,10 @@ def overlapping_row(mesh: Mesh, cells: Cells, row: int) -> int:
     own = mesh.coordinates[_corners(cells, row)]
     low, high = own.min(axis=0), own.max(axis=0)
     for before, block in ((0, cells.triangles), (len(cells.triangles), cells.quads)):
-        x, y = mesh.coordinates[:, 0][block], mesh.coordinates[:, 1][block]
-        near = (
-            (x.min(axis=1) < high[0]) & (x.max(axis=1) > low[0]) & (y.min(axis=1) < high[1]) & (y.max(axis=1) > low[1])
-        )
+        near = np.ones(len(block), dtype=np.bool_)
+        for axis in (0, 1):
+            z = mesh.coordinates[:, axis][block]
+            near &= (z.min(axis=1) < high[axis]) & (z.max(axis=1) > low[axis])
         rows = np.flatnonzero(near)
         for start in range(0, len(rows), _CHUNK):
             part = rows[start : start + _CHUNK]
@@ -118,9 +118,8 @@ def part_of(mesh: Mesh, cells: Cells, rows: tuple[int, ...]) -> tuple[Mesh, Cell
     m = len(cells.triangles)
     triangles = cells.triangles[[row for row in rows if row < m]]
     quads = cells.quads[[row - m for row in rows if row >= m]]
-    points, numbers = np.unique(np.concatenate([triangles.ravel(), quads.ravel()]), return_inverse=True)
-    numbers = numbers.astype(np.int32)
-    own = Cells(numbers[: triangles.size].reshape(-1, 3), numbers[triangles.size :].reshape(-1, 4))
+    points = np.unique(np.concatenate([triangles.ravel(), quads.ravel()]))
+    own = Cells(*(np.searchsorted(points, block).astype(np.int32) for block in (triangles, quads)))
     return Mesh(mesh.points[points], mesh.coordinates[points], mesh.context, *own), own, points
 
 

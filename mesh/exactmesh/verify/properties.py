@@ -19,6 +19,7 @@ __all__ = [
     "CONSTRAINED_TRIANGULATION",
     "DELAUNAY_TRIANGULATION",
     "DOMAIN_TRIANGULATION",
+    "LOCAL_PROPERTIES",
     "ChoiceError",
     "Kind",
     "Orientation",
@@ -129,6 +130,17 @@ DELAUNAY_TRIANGULATION: tuple[Property, ...] = tuple(
     property_
     for property_ in tuple(Property)[: tuple(Property).index(Property.DELAUNAY) + 1]
     if property_ is not Property.CONVEX
+)
+
+
+#: What a few cells can violate all by themselves: its violations name as few as that takes.
+LOCAL_PROPERTIES = frozenset(
+    {
+        *(Property.FINITE, Property.INDICES, Property.DISTINCT_POINTS, Property.ORIENTATION, Property.CONVEX),
+        *(Property.EDGE_MANIFOLD, Property.VERTEX_MANIFOLD, Property.ADMISSIBLE),
+        *(Property.DELAUNAY, Property.CONSTRAINED_DELAUNAY, Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE),
+        *(Property.WEAKLY_ACUTE, Property.ACUTE, Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA),
+    }
 )
 
 

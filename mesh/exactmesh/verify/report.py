@@ -1,5 +1,6 @@
 """The answer of the verifier: a verdict for each property, with witnesses."""
 
+import builtins
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -9,24 +10,20 @@ from math import inf, isqrt, nextafter
 from exactkernel.errors import ExactMeshError
 from exactkernel.types import Sign, Stage
 from exactmesh.verify.checked import CheckedMesh
-from exactmesh.verify.properties import Kind, Property, Severity, Verdict
+from exactmesh.verify.document import FORMAT, document_of, finding_document, violation_document
+from exactmesh.verify.properties import LOCAL_PROPERTIES, Kind, Property, Severity, Verdict
+from exactmesh.verify.submesh import Submesh, cut_out
 
 __all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
 
 #: Violations that a finding spells out; ``Finding.count`` goes on counting.
 WITNESSES = 100
-#: The name and version of what :meth:`Report.to_json` writes.
-FORMAT = "exactmesh-report/1"
 
 _MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
 _ROUNDING_FAILS = "~"
 _UNCLAIMED_FAILS = "-"  # a fact, not a fault
 _WIDTH = 16  # of the column of names
 _SHOWN = 3  # violations of a property that str(report) prints
-
-
-def _ratio(value: Fraction) -> str:
-    return f"{value.numerator}/{value.denominator}"
 
 
 def root_above(value: Fraction) -> float:
@@ -57,6 +54,11 @@ class Violation:
             (orient2d, and where an area is too large), the incircle determinant, or the scalar product of diametral.
         severity: ``ROUNDING`` where doubles do not resolve the magnitude, or its difference from a bound.
         degrees: the angle that is below or above a bound, rounded.
+        places: positions that are no vertices, such as a hole's point.
+        corners: the corners of each of ``triangles``.
+        indices: all of ``vertices`` and corners, ascending.
+        points: where these are, exactly; NaN for an index that is out of range.
+        point_count: the number of points of the mesh.
     """
 
     property: Property
@@ -68,20 +70,39 @@ class Violation:
     magnitude: Fraction | None = None
     severity: Severity = Severity.WRONG
     degrees: float | None = None
+    places: tuple[tuple[float, float], ...] = ()
+    corners: tuple[tuple[int, ...], ...] = field(default=(), compare=False, repr=False)
+    indices: tuple[int, ...] = field(default=(), compare=False, repr=False)
+    points: tuple[tuple[float, float], ...] = field(default=(), compare=False, repr=False)
+    point_count: int = field(default=0, compare=False, repr=False)
+
+    @builtins.property  # the field ``property`` hides the name
+    def is_local(self) -> bool:
+        """Whether :meth:`submesh` violates the same property by itself, and needs every cell for that. Of what is not
+        local no part of a mesh can speak: that a point is unused, or a segment missing."""
+        return self.property in LOCAL_PROPERTIES
+
+    def submesh(self) -> Submesh:
+        """Return the cells and vertices that are named, as a mesh.
+
+        >>> from exactmesh.verify import verify
+        >>> square = [(0, 0), (4, 0), (4, 4), (0, 4), (9, 9)]
+        >>> report = verify(square, [(0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 4, 2)], claims=["admissible"])
+        >>> part = report.findings["admissible"].violations[0].submesh()
+        >>> part.triangles.tolist(), part.indices, part.cells
+        ([[0, 1, 2], [0, 1, 3]], (0, 1, 2, 3), (0, 2))
+        >>> verify(part.points, part.triangles, claims=["admissible"]).ok
+        False
+        """
+        return cut_out(self)
+
+    def to_python(self) -> str:
+        """Return source to copy: the violation as a comment, and the arrays of :meth:`submesh`."""
+        return f"# {self.property}, {self.kind}: {self.message}\n{self.submesh().to_python()}"
 
     def to_dict(self) -> dict[str, object]:
-        """Return what JSON can say; the rational as "p/q"."""
-        angle = {} if self.degrees is None else {"degrees": self.degrees}
-        return {
-            "kind": self.kind.value,
-            "severity": self.severity.value,
-            "triangles": list(self.triangles),
-            "vertices": list(self.vertices),
-            "sign": None if self.sign is None else int(self.sign),
-            "magnitude": None if self.magnitude is None else _ratio(self.magnitude),
-            **angle,
-            "message": self.message,
-        }
+        """Return what JSON can say, see :meth:`Report.to_json`."""
+        return violation_document(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,16 +142,7 @@ class Finding:
 
     def to_dict(self) -> dict[str, object]:
         """Return what JSON can say."""
-        distance = {} if self.distance_squared is None else {"distance_squared": _ratio(self.distance_squared)}
-        return {
-            "verdict": self.verdict.value,
-            "count": self.count,
-            "count_is_lower_bound": self.lower_bound,
-            "rounding": self.rounding,
-            "because": [property_.value for property_ in self.because],
-            **distance,
-            "violations": [violation.to_dict() for violation in self.violations],
-        }
+        return finding_document(self)
 
 
 class VerificationError(ExactMeshError):
@@ -246,22 +258,9 @@ class Report:
             raise VerificationError(f"{summary}: {sentence}", report=self)
 
     def to_json(self) -> str:
-        """Return the report as JSON, format "exactmesh-report/1": every verdict, witnesses, rationals as
-        "p/q"."""
-        document = {
-            "format": FORMAT,
-            "ok": self.ok,
-            "points": self.point_count,
-            "triangles": self.triangle_count,
-            "quads": self.quad_count,
-            "claims": [claim.value for claim in self.claims],
-            "stages": {
-                predicate: {stage.name.lower(): count for stage, count in counts.items()}
-                for predicate, counts in self.stages.items()
-            },
-            "properties": {property_.value: finding.to_dict() for property_, finding in self.findings.items()},
-        }
-        return json.dumps(document, indent=2, allow_nan=False)
+        """Return the report as JSON, format "exactmesh-report/2", with the hash of the mesh: a certificate, which
+        :func:`check_certificate` compares with a mesh. The same report makes the same text."""
+        return json.dumps(document_of(self), indent=2, allow_nan=False)
 
     def to_html(self, title: str | None = None) -> str:
         """Return the report as one page for a browser, which needs no network: the mesh, to be zoomed, the failing

@@ -55,10 +55,11 @@ from exactmesh.verify.properties import (
 )
 from exactmesh.verify.report import Finding, Report
 from exactmesh.verify.sizes import Size, check_lengths
+from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
 
-__all__ = ["verify"]
+__all__ = ["Extras", "Given", "of_mesh", "verify"]
 
 
 @overload
@@ -184,7 +185,7 @@ def verify(
     cells = Given(points, triangles, quads)
     extras = Extras(segments, domain, labels, orientation)
     if triangles is None and quads is None:
-        cells, extras = _of_mesh(points, extras)
+        cells, extras = of_mesh(points, extras)
     doubles = points_of(cast(npt.ArrayLike, cells.points))
     triples = index_triples(() if cells.triangles is None else cells.triangles)
     fours = index_quads(() if cells.quads is None else cells.quads)
@@ -214,8 +215,24 @@ def verify(
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
     undecided = Finding(Verdict.UNDECIDED, because=failed)
+    checked = CheckedMesh(
+        doubles,
+        triples,
+        fours,
+        segments=constraints.segments,
+        labels=constraints.labels,
+        domain=constraints.outline,
+        bounds=_numbers(
+            min_angle=min_angle,
+            max_angle=max_angle,
+            max_area=max_area,
+            size=None if callable(size) else size,
+            within=within,
+        ),
+        orientation=chosen,
+    )
     return Report(
-        findings={property_: findings.get(property_, undecided) for property_ in decided},
+        findings={property_: with_numbers(findings.get(property_, undecided), checked) for property_ in decided},
         claims=claimed,
         point_count=len(doubles),
         triangle_count=len(triples),
@@ -224,22 +241,7 @@ def verify(
             name: {stage: int(counts[row, stage]) for stage in Stage}
             for name, row in (("orient2d", ORIENT2D_ROW), ("incircle", INCIRCLE_ROW))
         },
-        mesh=CheckedMesh(
-            doubles,
-            triples,
-            fours,
-            segments=constraints.segments,
-            labels=constraints.labels,
-            domain=constraints.outline,
-            bounds=_numbers(
-                min_angle=min_angle,
-                max_angle=max_angle,
-                max_area=max_area,
-                size=None if callable(size) else size,
-                within=within,
-            ),
-            orientation=chosen,
-        ),
+        mesh=checked,
     )
 
 
@@ -261,7 +263,7 @@ class Extras(NamedTuple):
     usual: tuple[Property, ...] | None = None
 
 
-def _of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
+def of_mesh(mesh: object, extras: Extras) -> tuple[Given, Extras]:
     """Return the arrays of a mesh of some package, and what comes with it, unless something else was given."""
     from exactmesh.adapters import given_mesh  # arrays need none of it
 
