@@ -5,7 +5,7 @@ from __future__ import annotations  # help() shows ArrayLike, not all that it st
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -253,7 +253,7 @@ def _domain(outline: Outline | None) -> _Domain | None:
 
 
 def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
-    bounds = cast("dict[str, float]", dict(mesh.bounds))  # some may be arrays, where verify takes arrays
+    bounds = cast("dict[str, Any]", dict(mesh.bounds))  # some may be arrays, where verify takes arrays
     return verify(
         mesh.points,
         mesh.triangles,
