@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from exactmesh import PSLG, constrained_delaunay, delaunay
+from exactmesh import PSLG, constrained_delaunay, delaunay, voronoi
 from exactmesh.cli import main
 from exactmesh.errors import CertificateError
 from exactmesh.io import Mesh, write
@@ -243,11 +243,17 @@ class TestCertificate:
         below, beyond = np.array([(0, 1, -1)]), np.array([(0, 1, 2**64 - 1)], dtype=np.uint64)
         assert not check_certificate(verify(KITE, below).to_json(), KITE, beyond)
 
-    def test_a_size_field_that_was_a_function(self) -> None:
+    def test_a_size_field_is_what_it_was_at_the_triangles(self) -> None:
         text = verify(KITE, HALVES, size=lambda xy: np.full(len(xy), 9.0)).to_json()
-        assert check_certificate(text, KITE, HALVES)
-        with pytest.raises(CertificateError, match="max_length cannot be verified again"):
-            check_certificate(text, KITE, HALVES, again=True)
+        assert check_certificate(text, KITE, HALVES, bounds={"size": np.full(2, 9.0)}, again=True)
+        assert not check_certificate(text, KITE, HALVES, bounds={"size": np.full(2, 8.0)})
+
+    def test_a_diagram_is_not_part_of_it(self) -> None:
+        dual = voronoi([(0, 0), (4, 0), (1, 3), (5, 6)])
+        assert dual.triangulation is not None
+        text = verify(dual.points, dual.triangulation.triangles, dual=dual).to_json()
+        with pytest.raises(CertificateError, match="does not hold the diagram"):
+            check_certificate(text, dual.points, dual.triangulation.triangles, again=True)
 
     def test_nested_too_deep(self) -> None:
         with pytest.raises(CertificateError):
