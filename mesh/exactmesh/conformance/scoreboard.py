@@ -35,12 +35,11 @@ was found for it. In brackets stands what is special about that input, where no 
 line).
 
 Made by `exactmesh conformance --all --output docs/scoreboard.md` on {date}, on {system}. A mesher is
-called as its documentation shows first; how exactly, [meshers.py]({meshers}) tells. A bound in its documentation on
-what it takes is not looked at: all finite doubles are put in.
+called as its documentation shows first; how exactly, `exactmesh/conformance/meshers.py` tells. A bound in its
+documentation on what it takes is not looked at: all finite doubles are put in.
 """
 _FAULTLESS, _EXCUSED = "no fault", "exception"
 _BUNDLE_KINDS = (_FAULTLESS, _EXCUSED, *(str(outcome) for outcome in Outcome if outcome is not Outcome.HOLDS))
-_MESHERS = "../mesh/exactmesh/conformance/meshers.py"
 
 Tell = Callable[[str], None]
 
@@ -60,7 +59,6 @@ def scoreboard(*, deadline: float = 60.0, timeout: float = 10.0, seed: int = 0, 
             seconds=timeout,
             date=datetime.datetime.now(datetime.UTC).date().isoformat(),
             system=f"{platform.system()}, {platform.machine()}, Python {platform.python_version()}",
-            meshers=_MESHERS,
         ),
         _table(("mesher", "package", "version"), ([k.title, k.package, k.version] for k in there.values())),
     ]

@@ -253,7 +253,7 @@ def _domain(outline: Outline | None) -> _Domain | None:
 
 
 def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
-    bounds = cast("dict[str, float]", dict(mesh.bounds))  # some may be arrays, where verify takes arrays
+    numbers = cast("Mapping[str, float]", mesh.bounds)  # these three are none of the arrays
     return verify(
         mesh.points,
         mesh.triangles,
@@ -263,7 +263,11 @@ def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
         labels=mesh.labels,
         claims=certificate.claims,
         orientation=str(certificate.given["orientation"]),
-        **bounds,
+        min_angle=numbers.get("min_angle"),
+        max_angle=numbers.get("max_angle"),
+        max_area=mesh.bounds.get("max_area"),
+        size=mesh.bounds.get("size"),
+        within=numbers.get("within"),
     )
 
 

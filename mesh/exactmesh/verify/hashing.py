@@ -16,15 +16,16 @@ from exactkernel.types import FloatArray
 
 if TYPE_CHECKING:
     from exactmesh.verify.domain import Outline
-    from exactmesh.verify.mesh import Integers
-    from exactmesh.verify.witness import IndexArray
 
 __all__ = ["array_sha256", "domain_sha256", "mesh_sha256"]
+
+Integers = npt.NDArray[np.integer]  # of whatever width
+Array = FloatArray | Integers
 
 _ROWS = 1 << 18  # at a time, so that no second copy of a large array is made
 
 
-def mesh_sha256(points: FloatArray, triangles: "Integers", quads: "Integers") -> str:
+def mesh_sha256(points: FloatArray, triangles: Integers, quads: Integers) -> str:
     """Return the name of a mesh: "exactmesh-mesh/1", points (n, 2), triangles (m, 3), quads (k, 4). O(n + m + k)."""
     return _digest(b"exactmesh-mesh/1\n", points, triangles, quads)
 
@@ -39,12 +40,12 @@ def domain_sha256(outline: "Outline") -> str:
     )
 
 
-def array_sha256(array: "FloatArray | IndexArray | Integers") -> str:
+def array_sha256(array: Array) -> str:
     """Return the name of one array of one or two dimensions: "exactmesh-array/1", then the array."""
     return _digest(b"exactmesh-array/1\n", array if array.ndim == 2 else array[:, None])
 
 
-def _digest(head: bytes, *arrays: "FloatArray | IndexArray | Integers") -> str:
+def _digest(head: bytes, *arrays: Array) -> str:
     digest = hashlib.sha256(head)
     for array in arrays:
         digest.update(np.array(array.shape, dtype="<i8").tobytes())
@@ -53,7 +54,7 @@ def _digest(head: bytes, *arrays: "FloatArray | IndexArray | Integers") -> str:
     return digest.hexdigest()
 
 
-def _canonical(array: "FloatArray | IndexArray | Integers") -> Iterator[npt.NDArray[np.generic]]:
+def _canonical(array: Array) -> Iterator[npt.NDArray[np.generic]]:
     real = array.dtype.kind == "f"
     for start in range(0, len(array), _ROWS):
         part = np.array(array[start : start + _ROWS], dtype="<f8" if real else "<i8", order="C")
