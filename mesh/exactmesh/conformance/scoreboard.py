@@ -1,6 +1,7 @@
 """The scoreboard: every known mesher, every law, every case of the corpus, as a page in Markdown."""
 
 import datetime
+import math
 import platform
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -8,8 +9,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from exactmesh.conformance.checking import check, retry
 from exactmesh.conformance.corpus import BUNDLES, CORPUS, Case, case_named
 from exactmesh.conformance.known import KNOWN, Known
-from exactmesh.conformance.laws import LAWS, Behaviour, Outcome, Task
+from exactmesh.conformance.laws import LAWS, Outcome, Task
+from exactmesh.conformance.process import Limits, MesherProcess
+from exactmesh.conformance.reference import resolved
 from exactmesh.conformance.result import Conformance, Counterexample
+from exactmesh.conformance.trial import Clock, Trial
 from exactmesh.errors import MesherError
 
 __all__ = ["scoreboard"]
@@ -31,10 +35,11 @@ was found for it. In brackets stands what is special about that input, where no 
 line).
 
 Made by `exactmesh conformance --all --output docs/scoreboard.md` on {date}, on {system}. A mesher is
-called as its documentation shows first; how exactly, [meshers.py]({meshers}) tells. A bound in its documentation on
-what it takes is not looked at: all finite doubles are put in.
+called as its documentation shows first; how exactly, `exactmesh/conformance/meshers.py` tells. A bound in its
+documentation on what it takes is not looked at: all finite doubles are put in.
 """
-_MESHERS = "../mesh/exactmesh/conformance/meshers.py"
+_FAULTLESS, _EXCUSED = "no fault", "exception"
+_BUNDLE_KINDS = (_FAULTLESS, _EXCUSED, *(str(outcome) for outcome in Outcome if outcome is not Outcome.HOLDS))
 
 Tell = Callable[[str], None]
 
@@ -54,7 +59,6 @@ def scoreboard(*, deadline: float = 60.0, timeout: float = 10.0, seed: int = 0, 
             seconds=timeout,
             date=datetime.datetime.now(datetime.UTC).date().isoformat(),
             system=f"{platform.system()}, {platform.machine()}, Python {platform.python_version()}",
-            meshers=_MESHERS,
         ),
         _table(("mesher", "package", "version"), ([k.title, k.package, k.version] for k in there.values())),
     ]
@@ -89,8 +93,8 @@ def _section(task: Task, results: Mapping[str, Conformance]) -> str:
     tried = ["inputs tried", *(str(result.tried) for result in results.values())]
     lines = [f"## {_TITLES[task]}", "", _table(heading, [*rows, tried])]
     for name, result in results.items():
-        if found := list(_examples(result)):
-            lines += [f"### {KNOWN[name].title}, {task}", "", *found]
+        if examples := list(_examples(result)):
+            lines += [f"### {KNOWN[name].title}, {task}", "", *examples]
     return "\n".join(lines)
 
 
@@ -109,8 +113,8 @@ def _examples(result: Conformance) -> Iterator[str]:
         if example is not None:
             said = f"- `{law}` {ruling.outcome}: {_plain(example.sentence)}"
             seen.setdefault(example.given.key, (example, []))[1].append(said)
-    for example, lines in seen.values():
-        yield "\n".join([*lines, "", "```sh", example.command, "```", ""])
+    for example, sentences in seen.values():
+        yield "\n".join([*sentences, "", "```sh", example.command, "```", ""])
 
 
 def _plain(sentence: str) -> str:
@@ -150,14 +154,12 @@ def _on_case(name: str, known: Known, case: Case) -> str:
 
 def _bundles(there: Mapping[str, Known], tell: Tell) -> str:
     """Count what becomes of segments through nearly one point."""
-    kinds = ("no fault", "excused exception", *(str(outcome) for outcome in Outcome if outcome is not Outcome.HOLDS))
     rows = []
     for name, known in there.items():
-        if Task.SEGMENTS not in known.functions:
-            continue
-        tell(f"bundles: {known.title}")
-        counts = Counter(_on_bundle(name, str(seed)) for seed in BUNDLES)
-        rows.append([known.title, *(str(counts[kind]) for kind in kinds)])
+        if Task.SEGMENTS in known.functions:
+            tell(f"bundles: {known.title}")
+            counts = Counter(_on_bundles(name, known))
+            rows.append([known.title, *(str(counts[kind]) for kind in _BUNDLE_KINDS)])
     return "\n".join(
         [
             "### Bundles",
@@ -165,16 +167,21 @@ def _bundles(there: Mapping[str, Known], tell: Tell) -> str:
             f"`corpus:7/0` to `corpus:7/{BUNDLES[-1]}`: three to seven segments through nearly one point. They cross,",
             "so that an exception is an answer; but what comes back has to be a mesh.",
             "",
-            _table(["mesher", *kinds], rows),
+            _table(["mesher", *_BUNDLE_KINDS], rows),
         ]
     )
 
 
-def _on_bundle(name: str, seed: str) -> str:
-    given = case_named(f"7/{seed}").make()
-    result = retry(name, given.points, given.segments, kind=Task.SEGMENTS, timeout=_BUNDLE_SECONDS)
-    broken = [ruling.outcome for ruling in result.rulings.values() if ruling.counterexample is not None]
-    if broken:
-        return str(max(broken, key=tuple(Outcome).index))
-    answered = any(ruling.judged for law, ruling in result.rulings.items() if law is not Behaviour.ANSWERS)
-    return "no fault" if answered else "excused exception"
+def _on_bundles(name: str, known: Known) -> Iterator[str]:
+    """Yield what becomes of each bundle, tried in one process."""
+    reference, _ = resolved(name, Task.SEGMENTS)
+    with MesherProcess(reference, Limits(seconds=_BUNDLE_SECONDS), segments=True) as process:
+        trial = Trial(process, Task.SEGMENTS, known.orientation)
+        trial.clock = Clock(math.inf)
+        for seed in BUNDLES:
+            judgement = trial.judgement(case_named(f"7/{seed}").make())
+            broken = [fault.outcome for fault in judgement.values() if fault is not None]
+            if broken:
+                yield str(max(broken, key=tuple(Outcome).index))
+            else:
+                yield _FAULTLESS if len(judgement) > 1 else _EXCUSED
