@@ -111,6 +111,15 @@ class Property(StrEnum):
     """Every triangle has an area and no angle above a bound."""
     MAX_AREA = "max_area"
     """No triangle has an area above its bound."""
+    MAX_LENGTH = "max_length"
+    """No triangle has an edge longer than the size that is wanted at its centroid (rounded), or that is given for
+    it."""
+    VORONOI_DUAL = "voronoi_dual"
+    """A Voronoi diagram is the dual of the triangles: to every edge between triangles of different circumcentres, and
+    to every edge of the boundary, one ridge is dual; it ends at the circumcentres, each coordinate the exact one or one
+    of the two doubles next to it, or at infinity, in a direction (if it is given) that points away from the triangles
+    and is perpendicular but for the rounding of its coordinates. Besides, there may be ridges dual to edges between
+    equal circumcentres. UNDECIDED without DELAUNAY, and without triangles."""
     REGION_AREAS = "region_areas"
     """No triangle in a face of the segments that contains the point of a region is larger than the fourth number of the
     region, if that is positive. UNDECIDED without ADMISSIBLE and SEGMENTS_PRESENT."""
@@ -200,6 +209,11 @@ class Kind(StrEnum):
     SMALL_ANGLE = "small_angle"
     LARGE_ANGLE = "large_angle"
     LARGE_AREA = "large_area"
+    LONG_EDGE = "long_edge"
+    MISSING_RIDGE = "missing_ridge"
+    EXTRA_RIDGE = "extra_ridge"
+    WRONG_RAY = "wrong_ray"
+    WRONG_CENTRE = "wrong_centre"
 
 
 #: The default claims with segments: a constrained Delaunay triangulation of the hull of the points.
@@ -275,10 +289,12 @@ _NEEDS = {
     Property.MIN_ANGLE: "min_angle=",
     Property.MAX_ANGLE: "max_angle=",
     Property.MAX_AREA: "max_area=",
+    Property.MAX_LENGTH: "size=",
+    Property.VORONOI_DUAL: "dual=",
     Property.REGION_AREAS: "a domain",
 }
 #: What is claimed wherever it is given.
-_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
+_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA, Property.MAX_LENGTH, Property.VORONOI_DUAL)
 
 
 def asked_properties(

@@ -25,6 +25,7 @@ __all__ = [
     "rows_of_triangles",
     "scalar_product",
     "sign_of",
+    "squared_length",
     "triangle_name",
     "twice_area",
 ]
@@ -53,6 +54,12 @@ def scalar_product(points: FloatArray, a: int, b: int, p: int) -> Fraction:
     """Return (p - a) . (b - p), positive where p sees ab under an obtuse angle."""
     (ax, ay), (bx, by), (px, py) = exact(points, a), exact(points, b), exact(points, p)
     return (px - ax) * (bx - px) + (py - ay) * (by - py)
+
+
+def squared_length(points: FloatArray, a: int, b: int) -> Fraction:
+    """Return the squared length of an edge."""
+    (ax, ay), (bx, by) = exact(points, a), exact(points, b)
+    return (bx - ax) ** 2 + (by - ay) ** 2
 
 
 def approximately(value: Fraction) -> str:
