@@ -5,7 +5,7 @@ The domain is a union of triangles that are known, so that covering it is a matt
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import combinations
@@ -40,8 +40,8 @@ class Case:
     segments: list[tuple[int, int]] | None = None
     labels: list[float] | None = None
     area: Area | None = None
-    bounds: tuple[float, float, float] = (30.0, 100.0, 4.0)
-    circles: bool = field(default=False)
+    bounds: tuple[float, float, float] | None = None
+    circles: bool = False
 
 
 @lru_cache(maxsize=2**16)
@@ -67,6 +67,12 @@ def common_area(s: tuple[Given, ...], t: tuple[Given, ...]) -> Fraction:
     return abs(sum((p[0] * q[1] - p[1] * q[0] for p, q in zip(polygon, turned, strict=True)), Fraction(0)))
 
 
+@lru_cache(maxsize=2**10)
+def hull_area(points: tuple[Given, ...]) -> Fraction:
+    """Twice the area of the hull."""
+    return oracles.hull_area([exact(p) for p in points])
+
+
 def edges_of(triangles: Iterable[Triangle]) -> Counter[frozenset[int]]:
     return Counter(frozenset(pair) for t in triangles for pair in combinations(t, 2))
 
@@ -90,7 +96,7 @@ class Truth:
             Property.EDGE_MANIFOLD: lambda: oracles.is_edge_manifold(self.triangles),
             Property.VERTEX_MANIFOLD: lambda: oracles.is_vertex_manifold(self.triangles),
             Property.ADMISSIBLE: lambda: self.admissible,
-            Property.COVERS_HULL: lambda: oracles.covers_hull(self.points, self.triangles),
+            Property.COVERS_HULL: lambda: self._area == hull_area(tuple(self.case.points)),
             Property.DELAUNAY: lambda: oracles.is_delaunay(self.points, self.triangles),
             Property.SEGMENTS_PRESENT: lambda: self.segments_present,
             Property.CONSTRAINED_DELAUNAY: self._constrained_delaunay,
@@ -100,9 +106,11 @@ class Truth:
             Property.REGIONS: self._regions,
             Property.WEAKLY_ACUTE: lambda: self.solid and all(self._largest(t) <= 0 for t in self.triangles),
             Property.ACUTE: lambda: self.solid and all(self._largest(t) < 0 for t in self.triangles),
-            Property.MIN_ANGLE: lambda: self._within(shape_oracle.angle_below, self.case.bounds[0]),
-            Property.MAX_ANGLE: lambda: self._within(shape_oracle.angle_above, self.case.bounds[1]),
-            Property.MAX_AREA: lambda: not any(abs(self.turn(t)) > 2 * self.case.bounds[2] for t in self.triangles),
+            Property.MIN_ANGLE: lambda: self._within(shape_oracle.angle_below, self._bounds[0]),
+            Property.MAX_ANGLE: lambda: self._within(shape_oracle.angle_above, self._bounds[1]),
+            Property.MAX_AREA: lambda: (
+                not any(abs(self.turn(t)) > 2 * Fraction(self._bounds[2]) for t in self.triangles)
+            ),
             Property.GABRIEL: lambda: not gabriel_oracle.encroachers(self.points, self.triangles, self._own_segments),
             Property.CIRCUMCENTRES_INSIDE: lambda: gabriel_oracle.centres_inside(self.points, self.triangles),
         }
@@ -112,9 +120,19 @@ class Truth:
         a, b, c = t
         return oracles.orient(self.points[a], self.points[b], self.points[c])
 
+    @property
+    def _area(self) -> Fraction:
+        """Twice the area of admissible triangles."""
+        return sum((abs(self.turn(t)) for t in self.triangles), Fraction(0))
+
     def _corners_of(self, t: Triangle) -> tuple[Given, Given, Given]:
         a, b, c = t
         return self.case.points[a], self.case.points[b], self.case.points[c]
+
+    @property
+    def _bounds(self) -> tuple[float, float, float]:
+        assert self.case.bounds is not None
+        return self.case.bounds
 
     def _largest(self, t: Triangle) -> int:
         return oracles.largest_angle_sign(self.points, t)
@@ -204,7 +222,7 @@ class Truth:
         own = [self._corners_of(t) for t in self.triangles]
         whole = [common_area(d, d) for d in theirs]
         inside = [sum((common_area(d, t) for t in own), Fraction(0)) for d in theirs]
-        return inside == whole and sum((abs(self.turn(t)) for t in self.triangles), Fraction(0)) == sum(whole)
+        return inside == whole and self._area == sum(whole)
 
     def _domain_points(self) -> bool:
         assert self.case.area is not None

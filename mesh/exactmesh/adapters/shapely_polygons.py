@@ -93,8 +93,11 @@ def _require_cells(polygons: npt.NDArray[np.object_], sides: npt.NDArray[np.int6
 
 def _merged(positions: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intp]]:
     """Return the distinct positions in the order in which they occur first, and the number of each. O(n log n)."""
-    _, first, which = np.unique(positions + 0.0, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    number = np.empty(len(order), dtype=np.intp)
-    number[order] = np.arange(len(order))
-    return positions[first[order]], number[which.ravel()]
+    order = np.lexsort((positions[:, 1], positions[:, 0]))  # stable: equal ones in their order
+    ranked = positions[order]
+    begins = np.ones(len(order), dtype=np.bool_)
+    begins[1:] = (ranked[1:] != ranked[:-1]).any(axis=1)
+    first = np.empty(len(order), dtype=np.intp)
+    first[order] = order[begins][np.cumsum(begins) - 1]
+    kept = first == np.arange(len(order))
+    return positions[kept], (np.cumsum(kept) - 1)[first]

@@ -84,7 +84,8 @@ def _aside(report: Report, mesh: CheckedMesh, heading: str) -> Iterator[str]:
 
     tone, answer = ("ok", "every claim holds") if report.ok else ("bad", "not what it claims to be")
     yield f'<aside aria-label="Report">\n<header>\n<h1>{escape(heading)}</h1>\n'
-    yield f'<span class="answer {tone}">{answer}</span>\n<p class="counts">{_counts(mesh)}</p>\n</header>\n'
+    counts = "" if heading == _counts(mesh) else f'<p class="counts">{_counts(mesh)}</p>\n'
+    yield f'<span class="answer {tone}">{answer}</span>\n{counts}</header>\n'
     yield "<section>\n<details open>\n<summary><h2>Claims</h2></summary>\n"
     claimed = {property_: report.findings[property_] for property_ in report.claims}
     others = {name: finding for name, finding in report.findings.items() if name not in claimed}

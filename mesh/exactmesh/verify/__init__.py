@@ -37,6 +37,7 @@ from exactmesh.verify.properties import (
     Verdict,
 )
 from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, VerificationError, Violation
+from exactmesh.verify.schema import report_schema
 from exactmesh.verify.submesh import Submesh
 from exactmesh.verify.verifier import verify
 
@@ -66,5 +67,6 @@ __all__ = [
     "Violation",
     "check_certificate",
     "read_certificate",
+    "report_schema",
     "verify",
 ]
