@@ -1,5 +1,6 @@
 """The command and the pytest plugin: exit codes, copyable counterexamples, one test a law, and nothing unasked for."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -83,10 +84,11 @@ class TestCommand:
 
 def pytest_run(folder: Path, *arguments: str) -> tuple[int, str]:
     """Run pytest with the plugin alone, as in somebody's project."""
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist", *arguments]
-    if not any("pytest11" in str(argument) for argument in arguments):
-        command[3:3] = ["-p", "pytest_exactmesh"]
-    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    plugins = ("-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:exactmesh", "-p", "pytest_exactmesh")
+    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    command = [sys.executable, "-m", "pytest", *plugins, *arguments]
+    environment = {**os.environ, "PYTHONPATH": paths}
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
     return run.returncode, run.stdout + run.stderr
 
 
@@ -97,7 +99,6 @@ class TestPlugin:
     small = ("--mesher-examples=3", "-q")
 
     def test_one_test_a_law(self, tmp_path: Path) -> None:
-        place = f"{ROOT / 'proofs_tests' / 'planted_meshers.py'}"
         tmp_path.joinpath("test_own.py").write_text(
             "def test_own(mesher, assert_delaunay, assert_admissible, assert_constrained_delaunay):\n"
             "    import numpy as np\n"
@@ -107,10 +108,10 @@ class TestPlugin:
             "    assert_constrained_delaunay(points, mesher(points), segments=[(0, 1)])\n"
         )
         count = len(LAWS[Task.POINTS])
-        code, told = pytest_run(tmp_path, f"--mesher={place}:right", *self.small)
+        code, told = pytest_run(tmp_path, f"--mesher={PLACE}:right", *self.small)
         assert f"{count + 1} passed" in told
         assert code == 0
-        code, told = pytest_run(tmp_path, f"--mesher={place}:drops_a_hull_triangle", *self.small)
+        code, told = pytest_run(tmp_path, f"--mesher={PLACE}:drops_a_hull_triangle", *self.small)
         assert "FAILED" in told
         assert "covers_hull: wrong" in told
         assert "from exactmesh.conformance import retry" in told
