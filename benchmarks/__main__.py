@@ -1,4 +1,4 @@
-"""``python -m benchmarks delaunay|constrained|refine|voronoi|verify [--quick] [--rounds N]``."""
+"""``python -m benchmarks delaunay|constrained|refine|voronoi|verify|strategies [--quick] [--rounds N]``."""
 
 import os
 
@@ -11,6 +11,7 @@ import typer
 from benchmarks import constrained as constrained_benchmark
 from benchmarks import delaunay as delaunay_benchmark
 from benchmarks import refine as refine_benchmark
+from benchmarks import strategies as strategies_benchmark
 from benchmarks import verify as verify_benchmark
 from benchmarks import voronoi as voronoi_benchmark
 
@@ -48,6 +49,12 @@ def voronoi(quick: Quick = False, rounds: Rounds = 5) -> None:
 def verify(quick: Quick = False, rounds: Rounds = 5) -> None:
     """Time the verifier beside building the mesh."""
     verify_benchmark.run(quick=quick, rounds=rounds)
+
+
+@app.command()
+def strategies(quick: Quick = False, rounds: Rounds = 5) -> None:
+    """Count how many inputs a second the hypothesis strategies draw."""
+    strategies_benchmark.run(quick=quick, rounds=rounds)
 
 
 if __name__ == "__main__":

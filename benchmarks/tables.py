@@ -19,7 +19,8 @@ _HEAD = """# Benchmarks
 
 Side by side in one run on one machine: each mesher in a process of its own, taking turns round after round; medians,
 and in parentheses the ratio to exactmesh (2.0: it takes twice as long). Rerun with `python -m benchmarks delaunay`,
-`constrained`, `refine`, `voronoi` and `verify` after `pip install '.[bench]'`; each run rewrites its section.
+`constrained`, `refine`, `voronoi`, `verify` and `strategies` after `pip install '.[bench]'`; each run rewrites its
+section.
 """
 
 

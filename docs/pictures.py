@@ -1,16 +1,29 @@
-"""Draws the pictures of the README and of the site: ``python docs/pictures.py``, with the extra ``plot``."""
+"""Draws the pictures of the README and of the site: ``python docs/pictures.py``, with the extras plot, hypothesis."""
 
 import tempfile
 import warnings
 from pathlib import Path
 
 import numpy as np
+from hypothesis import Phase, given, settings
+from hypothesis.strategies import SearchStrategy
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from PIL import Image  # comes with matplotlib
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, Triangulation, Voronoi, constrained_delaunay, delaunay, lloyd, refine, triangle, voronoi
+from exactmesh import (
+    PSLG,
+    Triangulation,
+    Voronoi,
+    constrained_delaunay,
+    delaunay,
+    lloyd,
+    refine,
+    strategies,
+    triangle,
+    voronoi,
+)
 from exactmesh.demo import course_points, lake, mosaic
 from exactmesh.plane import BoolArray
 from exactmesh.plot import plot_mesh, plot_voronoi
@@ -85,6 +98,49 @@ def shores() -> PSLG:
     return PSLG(whole.points[: int(shore.max()) + 1], shore, holes=whole.holes)
 
 
+def points_of(shown: PSLG | FloatArray) -> FloatArray:
+    """Return the points, scaled to fill the unit square."""
+    points = shown.points if isinstance(shown, PSLG) else shown
+    return (points - points.min(axis=0)) / np.maximum(np.ptp(points, axis=0), 5e-324)
+
+
+def drawn(strategy: SearchStrategy[PSLG | FloatArray]) -> PSLG | FloatArray:
+    """Return one of the examples of a strategy, always the same: what is scattered, or else the least like a line."""
+    found: list[PSLG | FloatArray] = []
+
+    @settings(max_examples=60, database=None, deadline=None, derandomize=True, phases=[Phase.generate])
+    @given(strategy)
+    def collect(value: PSLG | FloatArray) -> None:
+        found.append(value)
+
+    collect()
+    scattered = [shown for shown in found if not isinstance(shown, PSLG) and len(np.unique(shown)) > 20]
+    return scattered[-1] if scattered else max(found, key=lambda shown: np.linalg.det(np.cov(points_of(shown).T)))
+
+
+def draw_strategies(name: str, *, width: int) -> None:
+    """Draw an example of each family of points and graphs, each to fill its square."""
+    sets = [f for f in strategies.__all__ if f.endswith("_points")]
+    graphs = ["polygons", "polygons_with_holes", "slits", "spirals", "small_angles", "near_concurrent"]
+    figure = Figure(figsize=(12, 6.6), dpi=150, layout="constrained")
+    for axes, family in zip(
+        figure.subplots(3, 6).reshape(-1), [*sets, *graphs, "shared_borders", "t_junctions"], strict=True
+    ):
+        axes.set_title(family, fontsize=9)
+        axes.set_xticks([])
+        axes.set_yticks([])
+        shown = drawn(getattr(strategies, family)(min_size=30, max_size=30))
+        placed = points_of(shown)
+        if isinstance(shown, PSLG):
+            axes.add_collection(LineCollection(placed[shown.segments], colors="#1b2a41", linewidths=0.8))
+        axes.plot(*placed.T, ".", color="#c1121f", markersize=3)
+        axes.margins(0.08)
+    with tempfile.TemporaryDirectory() as folder:
+        large = Path(folder) / f"{name}.png"
+        figure.savefig(large)
+        shrink(large, name, width)
+
+
 def county(name: str) -> PSLG:
     """Return a county by name, from bokeh's sample data, in kilometres (near enough) from its middle."""
     from bokeh_sampledata import us_counties
@@ -106,6 +162,7 @@ if __name__ == "__main__":
     draw("county", refine(borders, min_angle=30).triangulation, "Los Angeles County, refined to 30 degrees", width=880)
     draw("lake", constrained_delaunay(lake(), crossings="split"), "A lake, islands, and dikes that cross", width=880)
     draw_calls("calls", width=1000)
+    draw_strategies("strategies", width=1000)
     square = (0.0, 0.0, 1.0, 1.0)
     points = np.random.default_rng(4).random((120, 2))
     relaxed = lloyd(points, clip=square, iterations=100).points

@@ -181,6 +181,20 @@ class TestFiles:
         assert len(told.err.splitlines()) == 1
         assert str(path) in told.err
 
+    @pytest.mark.parametrize("name", EXACT)
+    def test_files_that_were_cut_off(self, name: str, tmp_path: Path) -> None:
+        """The end of the file is an error, or a mesh with fewer cells; nobody waits for more."""
+        path = written(tmp_path, name, SPACE, [("triangle", MESH.triangles)])
+        content = path.read_bytes()
+        refused = 0
+        for end in range(0, len(content), len(content) // 40 + 1):
+            path.write_bytes(content[:end])
+            try:
+                assert verify(path).triangle_count <= len(MESH.triangles)
+            except FileFormatError:
+                refused += 1
+        assert refused > 0
+
     def test_other_faults(self, tmp_path: Path) -> None:
         with pytest.raises(FileFormatError, match=r"nothing\.msh: no such file"):
             verify(tmp_path / "nothing.msh")
@@ -194,11 +208,15 @@ class TestFiles:
         with pytest.raises(FileFormatError, match=r"mesh\.vtk: the mesh is not planar: point"):
             verify(path)
 
-    def test_without_meshio(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_without_meshio(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
         path = written(tmp_path, "VTK", SPACE, [("triangle", MESH.triangles)])
         monkeypatch.setitem(sys.modules, "meshio", None)
         with pytest.raises(files.MeshioUnavailableError, match=r"mesh\.vtk: .*pip install 'exactmesh\[mesh\]'"):
             verify(path)
+        assert cli.main(["verify", str(path)]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
 
     def test_command(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         path = written(tmp_path, "VTU", SPACE, [("triangle", MESH.triangles)])

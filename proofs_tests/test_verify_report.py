@@ -48,6 +48,7 @@ NOT_ASKED = {
     Property.MAX_ANGLE,
     Property.MAX_AREA,
     Property.MAX_LENGTH,
+    Property.VORONOI_DUAL,
 }
 
 

@@ -16,6 +16,7 @@ __all__ = [
     "check_sizes",
     "codes",
     "distinct",
+    "heights",
     "lattice",
     "scattered",
     "seeds",
@@ -68,6 +69,13 @@ def words(min_size: int, max_size: int) -> st.SearchStrategy[Words]:
 
 def _words_of(text: str) -> Words:
     return (np.frombuffer(text.encode("utf-32-le"), dtype="<u4") - np.uint32(_FIRST)).astype(np.uint64)
+
+
+@st.composite
+def heights(draw: st.DrawFn, min_size: int, max_size: int) -> npt.NDArray[np.int64]:
+    """Draw numbers from 0 that are below 8, 64 or 2^20."""
+    drawn = draw(words(min_size, max_size))
+    return (drawn % np.uint64(draw(st.sampled_from((8, 64, 2**20))))).astype(np.int64)
 
 
 def codes(min_size: int, max_size: int) -> st.SearchStrategy[Words]:

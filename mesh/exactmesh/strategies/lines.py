@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from exactkernel.types import FloatArray
 from exactmesh.pslg import PSLG
 from exactmesh.strategies.assembling import assembled, closed, path
-from exactmesh.strategies.drawing import check_sizes, codes, seeds, units, words
+from exactmesh.strategies.drawing import check_sizes, codes, heights, seeds, units
 
 __all__ = ["near_concurrent", "slits", "small_angles", "t_junctions"]
 
@@ -37,7 +37,7 @@ def slits(*, min_size: int = 6, max_size: int = 20) -> st.SearchStrategy[PSLG]:
 
 @st.composite
 def _slits(draw: st.DrawFn, low: int, high: int) -> PSLG:
-    drawn = draw(words(low - 5, high - 5)).astype(np.int64)  # a slit by two points, one of them by three
+    drawn = draw(heights(low - 5, high - 5))  # a slit by two points, one of them by three
     count = (len(drawn) + 1) // 2
     is_bent = len(drawn) % 2 == 0
     is_attached, lows = drawn[:count] % 2 == 1, drawn[:count] // 2
@@ -159,13 +159,13 @@ def t_junctions(*, min_size: int = 5, max_size: int = 20) -> st.SearchStrategy[P
 
 @st.composite
 def _comb(draw: st.DrawFn, low: int, high: int) -> PSLG:
-    drawn = draw(words(low - 4, high - 4)).astype(np.int64)  # a tooth by two points, one of them by three
+    drawn = draw(heights(low - 4, high - 4))  # a tooth by two points, one of them by three
     count = (len(drawn) + 1) // 2
     is_forked = len(drawn) % 2 == 0
-    x, heights = 2 + 2 * np.arange(count), 1 + drawn[:count]
+    x, tall = 2 + 2 * np.arange(count), 1 + drawn[:count]
     wide = 2 * count + 2
-    outline = [(0, 0), (wide, 0), (0, wide * (int(heights.max()) + 1))]  # steep enough to be above all teeth
-    feet, heads = np.stack([x, np.zeros_like(x)], axis=1), np.stack([x, heights], axis=1)
+    outline = [(0, 0), (wide, 0), (0, wide * (int(tall.max()) + 1))]  # steep enough to be above all teeth
+    feet, heads = np.stack([x, np.zeros_like(x)], axis=1), np.stack([x, tall], axis=1)
     rows = 3 + np.arange(count)
     parts = [closed(np.arange(3)), np.stack([rows, rows + count], axis=1)]
     if is_forked:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from exactmesh.pslg import PSLG, Carve
 from exactmesh.strategies.assembling import Cells, assembled, closed
-from exactmesh.strategies.drawing import Words, check_sizes, seeds, shuffled, words
+from exactmesh.strategies.drawing import check_sizes, heights, seeds, shuffled
 
 __all__ = ["polygons", "polygons_with_holes", "shared_borders", "spirals"]
 
@@ -41,26 +41,26 @@ def polygons(*, min_size: int = 3, max_size: int = 20) -> st.SearchStrategy[PSLG
 
 @st.composite
 def _polygon(draw: st.DrawFn, low: int, high: int) -> PSLG:
-    heights = draw(words(low - 2, high - 2))
-    is_staircase = draw(st.booleans()) and len(heights) >= 2
-    cells = _staircase(heights) if is_staircase else _zigzag(heights)
+    drawn = draw(heights(low - 2, high - 2))
+    is_staircase = draw(st.booleans()) and len(drawn) >= 2
+    cells = _staircase(drawn) if is_staircase else _zigzag(drawn)
     return assembled(draw, cells, closed(np.arange(len(cells))), rule=draw(_RULES))
 
 
-def _zigzag(heights: Words) -> Cells:
+def _zigzag(drawn: Cells) -> Cells:
     """A vertex at each x, above or below the axis by the first bit."""
-    n = len(heights)
+    n = len(drawn)
     x = np.arange(1, n + 1)
-    is_above = heights % np.uint64(2) == 1
-    y = np.where(is_above, 1, -1) * (1 + (heights >> np.uint64(1)).astype(np.int64))
+    is_above = drawn % 2 == 1
+    y = np.where(is_above, 1, -1) * (1 + drawn // 2)
     inner = np.stack([x, y], axis=1)
     return np.concatenate([[(0, 0)], inner[~is_above], [(n + 1, 0)], inner[is_above][::-1]])
 
 
-def _staircase(heights: Words) -> Cells:
+def _staircase(drawn: Cells) -> Cells:
     """Columns of those heights side by side, two vertices each, one more below if the number is odd."""
-    n = len(heights)
-    steps = 1 + 2 * heights[: n // 2].astype(np.int64) + np.arange(n // 2) % 2  # neighbours differ
+    n = len(drawn)
+    steps = 1 + 2 * drawn[: n // 2] + np.arange(n // 2) % 2  # neighbours differ
     x = 2 * np.arange(n // 2)[::-1]
     tops = np.stack([np.stack([x + 2, steps], axis=1), np.stack([x, steps], axis=1)], axis=1).reshape(-1, 2)
     base = [(0, 0), *[(1, 0)] * (n % 2), (2 * (n // 2), 0)]
@@ -137,8 +137,8 @@ _WHOLE = np.array([(0, 0), (4, 0), (4, 4), (0, 4)])
 
 @st.composite
 def _with_holes(draw: st.DrawFn, low: int, high: int) -> PSLG:
-    size = draw(st.integers(low, high))
-    count, seed = draw(st.integers(1, (size - 4) // 3)), draw(seeds)
+    size, seed = draw(st.integers(low, high)), draw(seeds)
+    count = draw(st.integers(max(1, (size - 10) // 4), (size - 4) // 3))
     spare = size - 4 - 3 * count  # vertices beyond four corners and triangles
     squares = min(count, draw(st.integers(0, spare)))
     spare -= squares
@@ -186,7 +186,7 @@ def _shared_border(draw: st.DrawFn, low: int, high: int) -> PSLG:
     copies = draw(st.integers(0, (size - 2) // 2))
     copies = copies if copies > 1 else 0
     length = size - 2 - copies
-    bends = draw(words(length, length)).astype(np.int64) % 4
+    bends = draw(heights(length, length)) % 4
     if 0 < copies < length:
         bends[:] = 0  # what is left out lies on the other's edge
     border = np.stack([bends, np.arange(length)], axis=1)

@@ -1,6 +1,7 @@
 """Points in special position: on grids, turned grids, circles and lines."""
 
 from functools import cache
+from math import isqrt
 
 import numpy as np
 from hypothesis import strategies as st
@@ -44,7 +45,7 @@ def grid_points(*, min_size: int = 3, max_size: int = 20) -> st.SearchStrategy[F
 @st.composite
 def _cells(draw: st.DrawFn, low: int, high: int) -> FloatArray:
     """The cells of a grid, some columns wide."""
-    size, columns, seed = draw(st.integers(low, high)), draw(st.integers(1, max(1, high))), draw(seeds)
+    size, columns, seed = draw(st.integers(low, high)), draw(st.integers(1, 2 * isqrt(high) + 1)), draw(seeds)
     rows, rest = np.divmod(shuffled(seed, size), np.uint64(min(columns, max(1, size))))
     return np.stack([rest, rows], axis=1).astype(np.float64)
 

@@ -2,7 +2,8 @@
 
 All numbers are little-endian, 64 bits each. First comes a line of ASCII that says what follows, then for each array the
 numbers of its rows and columns, then its rows. Coordinates and other reals are IEEE doubles, -0.0 as 0.0 and every NaN
-as 0x7ff8000000000000; indices are integers. The order of the rows matters, and so does that of the corners of a cell.
+as 0x7ff8000000000000; indices are integers, after the line "unsigned" where one of them is 2^63 or more. The order of
+the rows matters, and so does that of the corners of a cell.
 """
 
 import hashlib
@@ -49,6 +50,8 @@ def _digest(head: bytes, *arrays: Array) -> str:
     digest = hashlib.sha256(head)
     for array in arrays:
         digest.update(np.array(array.shape, dtype="<i8").tobytes())
+        if array.dtype.kind == "u" and array.size and int(array.max()) > np.iinfo(np.int64).max:
+            digest.update(b"unsigned\n")  # or they would be those below zero
         for part in _canonical(array):
             digest.update(part.tobytes())
     return digest.hexdigest()

@@ -13,13 +13,13 @@ from exactkernel.rational import raise_if_interrupted
 from exactkernel.shape import length_above_adaptive
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.verify.grading import rank_lengths
-from exactmesh.verify.mesh import Mesh
+from exactmesh.verify.mesh import Integers, Mesh
 from exactmesh.verify.properties import Kind, Property, Severity
 from exactmesh.verify.report import Finding, Violation, root_above
 from exactmesh.verify.severity import length_severity
 from exactmesh.verify.witness import finding_of, point_name, squared_length
 
-__all__ = ["Size", "check_lengths", "size_of"]
+__all__ = ["Size", "check_lengths", "size_of", "sizes_at"]
 
 _CHUNK = 1 << 17  # triangles between two looks at Ctrl-C
 
@@ -48,7 +48,7 @@ def _sizes(sizes: npt.ArrayLike, m: int, name: str) -> FloatArray:
     return limits
 
 
-def _centroids(points: FloatArray, triangles: IntArray) -> FloatArray:
+def _centroids(points: FloatArray, triangles: Integers) -> FloatArray:
     """Return the mean of the corners, in doubles."""
     corners = points[triangles]
     with np.errstate(over="ignore", invalid="ignore"):
@@ -71,14 +71,20 @@ def find_long(
                 found[t] = True
 
 
-def check_lengths(mesh: Mesh, size: "Size | FloatArray") -> Finding:
-    """MAX_LENGTH: a violation for each triangle with an edge longer than its size; measured as areas are.
+def sizes_at(size: "Size | FloatArray | None", points: FloatArray, triangles: Integers) -> FloatArray | None:
+    """Return sizes (m,): those that are given, or what the function says of the centroids.
 
     Raises:
         ShapeError, BoundError: the function does not return positive numbers.
     """
+    if not callable(size):
+        return size
+    return _sizes(size(_centroids(points, triangles)), len(triangles), "what size returned")
+
+
+def check_lengths(mesh: Mesh, limits: FloatArray) -> Finding:
+    """MAX_LENGTH: a violation for each triangle with an edge longer than its size; measured as areas are."""
     points, triangles, m = mesh.points, mesh.triangles, len(mesh.triangles)
-    limits = _sizes(size(_centroids(points, triangles)), m, "what size returned") if callable(size) else size
     k = make_context(points)._replace(counts=mesh.context.counts)
     found = np.empty(m, dtype=np.bool_)
     step = chunk_size(k, _CHUNK)

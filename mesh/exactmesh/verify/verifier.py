@@ -54,7 +54,7 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
-from exactmesh.verify.sizes import Size, check_lengths
+from exactmesh.verify.sizes import Size, check_lengths, sizes_at
 from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
@@ -207,7 +207,9 @@ def verify(
     }
     failed = tuple(property_ for property_, finding in findings.items() if finding.verdict is Verdict.FAILS)
     counts = np.zeros((2, len(Stage)), dtype=np.int64)
+    sizes = None if failed and callable(bounds.size) else sizes_at(bounds.size, doubles, triples)
     if not failed:
+        bounds = replace(bounds, size=sizes)
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
             mesh, positions = prepared_mesh(doubles, triples, fours, stacked(constraints.outline))
             findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, dual, decided))
@@ -226,7 +228,7 @@ def verify(
             min_angle=min_angle,
             max_angle=max_angle,
             max_area=max_area,
-            size=None if callable(size) else size,
+            size=sizes,
             within=within,
         ),
         orientation=chosen,
@@ -354,7 +356,7 @@ def _against_bounds(mesh: Mesh, shapes: Shapes, upright: IntArray, bounds: Bound
             findings[property_] = check_angle_bound(mesh, shapes, upright, angle, property_)
     if bounds.max_area is not None:
         findings[Property.MAX_AREA] = check_areas(mesh, upright, bounds.max_area, Property.MAX_AREA)
-    if bounds.size is not None:
+    if bounds.size is not None and not callable(bounds.size):
         findings[Property.MAX_LENGTH] = check_lengths(mesh, bounds.size)
     return findings
 
