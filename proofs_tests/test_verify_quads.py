@@ -222,9 +222,9 @@ class TestTilingsOfAGrid:
             halves = np.concatenate([triangles, quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
             return Cells(np.ascontiguousarray(halves), quads[:0])
 
-        from exactmesh.verify import verifier
+        from exactmesh.verify import deciding
 
-        monkeypatch.setattr(verifier, "proper_cells", cut)
+        monkeypatch.setattr(deciding, "proper_cells", cut)
         assert checked(GRID, SQUARES, segments=[(0, 8)]).verdict(Property.SEGMENTS_PRESENT) is Verdict.HOLDS
 
 
