@@ -203,6 +203,14 @@ def eats_memory(points: Floats) -> list[Triangle]:
     return right(points) if len(points) < 20 else right(np.ones((1 << 36, 2))[: len(points)])
 
 
+def refuses(points: Floats) -> list[Triangle]:
+    raise ValueError(f"no {len(points)} points")
+
+
+def refuses_segments(points: Floats, segments: Integers) -> list[Triangle]:
+    raise ValueError(f"no {len(points)} points and {len(segments)} segments")
+
+
 def loses_a_segment(points: Floats, segments: Integers) -> Any:
     from exactmesh.conformance.meshers import exactmesh_segments
 

@@ -72,6 +72,13 @@ class TestArrays:
         assert verify((SQUARE[:4], QUADS)) == verify(SQUARE[:4], quads=QUADS)
         assert verify(SimpleNamespace(points=SQUARE[:4], quads=np.array(QUADS))).ok
 
+    def test_points_in_a_plane_of_space(self) -> None:
+        report = verify(SQUARE, TRIANGLES)
+        assert verify((raised(SQUARE, 3), TRIANGLES)) == report
+        assert verify(SimpleNamespace(points=raised(SQUARE), triangles=TRIANGLES)) == report
+        with pytest.raises(AdapterError, match="the pair is not planar: point 4"):
+            verify((np.column_stack([SQUARE, np.arange(5) > 3]), TRIANGLES))
+
     def test_what_is_given_wins(self) -> None:
         pair = ([(0, 0), (0, 1), (1, 0)], [(0, 1, 2)])
         assert verify(pair).verdict(Property.ORIENTATION) is Verdict.FAILS

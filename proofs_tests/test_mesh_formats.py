@@ -181,6 +181,20 @@ class TestFiles:
         assert len(told.err.splitlines()) == 1
         assert str(path) in told.err
 
+    @pytest.mark.parametrize("name", EXACT)
+    def test_files_that_were_cut_off(self, name: str, tmp_path: Path) -> None:
+        """The end of the file is an error, or a mesh with fewer cells; nobody waits for more."""
+        path = written(tmp_path, name, SPACE, [("triangle", MESH.triangles)])
+        content = path.read_bytes()
+        refused = 0
+        for end in range(0, len(content), len(content) // 40 + 1):
+            path.write_bytes(content[:end])
+            try:
+                assert verify(path).triangle_count <= len(MESH.triangles)
+            except FileFormatError:
+                refused += 1
+        assert refused > 0
+
     def test_other_faults(self, tmp_path: Path) -> None:
         with pytest.raises(FileFormatError, match=r"nothing\.msh: no such file"):
             verify(tmp_path / "nothing.msh")
@@ -194,11 +208,15 @@ class TestFiles:
         with pytest.raises(FileFormatError, match=r"mesh\.vtk: the mesh is not planar: point"):
             verify(path)
 
-    def test_without_meshio(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_without_meshio(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
         path = written(tmp_path, "VTK", SPACE, [("triangle", MESH.triangles)])
         monkeypatch.setitem(sys.modules, "meshio", None)
         with pytest.raises(files.MeshioUnavailableError, match=r"mesh\.vtk: .*pip install 'exactmesh\[mesh\]'"):
             verify(path)
+        assert cli.main(["verify", str(path)]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
 
     def test_command(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         path = written(tmp_path, "VTU", SPACE, [("triangle", MESH.triangles)])
@@ -209,6 +227,34 @@ class TestFiles:
         )
         cells: Cells = [("triangle", np.concatenate([MESH.triangles, MESH.triangles[:1]]))]
         assert cli.main(["verify", str(written(tmp_path, "VTU", SPACE, cells))]) == 1
+
+    def test_info_and_plot(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        path = written(tmp_path, "Medit", SPACE, [("triangle", MESH.triangles)])
+        assert cli.main(["info", str(path)]) == 0
+        assert f"{len(MESH.edges)}, {len(MESH.hull)} of them on the boundary" in capsys.readouterr().out
+        assert cli.main(["plot", str(path), "-o", str(tmp_path / "a.svg")]) == 0
+        assert (tmp_path / "a.svg").stat().st_size > 1000
+        mixed = [("triangle", np.array([[1, 4, 2]])), ("quad", np.array([[0, 1, 2, 3]]))]
+        path = written(tmp_path, "Medit", MIXED, mixed)
+        capsys.readouterr()
+        assert cli.main(["info", str(path)]) == 0
+        assert "quadrilaterals" in capsys.readouterr().out
+        assert cli.main(["plot", str(path), "-o", str(tmp_path / "b.svg")]) == 2
+        assert "has quadrilaterals" in capsys.readouterr().err
+
+    def test_within(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        """A format of 12 digits is off its domain, by a distance that is told."""
+        frame = PSLG.from_rings([[(0, 0), (1, 1 / 3), (2 / 3, 1)]])
+        mesh = constrained_delaunay(frame)
+        domain, path = tmp_path / "frame.geojson", tmp_path / "mesh.bdf"
+        write_pslg(domain, frame)
+        space = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+        meshio.Mesh(space, [("triangle", mesh.triangles)]).write(path, file_format="nastran")
+        assert cli.main(["verify", str(path), "--domain", str(domain)]) == 1
+        assert cli.main(["verify", str(path), "--domain", str(domain), "--within", "1e-9"]) == 0
+        capsys.readouterr()
+        assert cli.main(["verify", str(path), "--within", "1e-9"]) == 2
+        assert "no --domain to be near to" in capsys.readouterr().err
 
     def test_domain(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         frame = PSLG.from_rings([[(0, 0), (4, 0), (4, 4), (0, 4)], [(1, 1), (2, 1), (2, 2)]])

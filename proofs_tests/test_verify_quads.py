@@ -1,5 +1,6 @@
 """V1 and V2 with quadrilaterals: verdicts are those of brute force on polygons, and each condition is necessary."""
 
+import hashlib
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations, permutations, product
@@ -10,6 +11,7 @@ import numpy.typing as npt
 import pytest
 from proofs_tests import cells_oracle, domain_oracle, oracles
 from proofs_tests.cells_oracle import Cell
+from proofs_tests.test_kernel_compiled import in_a_child
 
 from exactkernel import ShapeError, Sign
 from exactkernel.types import FloatArray, SignArray
@@ -334,6 +336,7 @@ CORRUPTIONS: list[Corruption] = [
 ]
 
 
+@pytest.mark.bounds
 @pytest.mark.obligation("V2", "each condition of the verifier is necessary")
 class TestCorrupted:
     """A mesh of triangles and quadrilaterals is what it claims to be; each corruption breaks the property that it is
@@ -370,6 +373,26 @@ class TestCorrupted:
         points, triangles, quads = clockwise(mixed_grid(1), Random(1))
         assert verify(points, triangles, quads=quads, orientation="any").ok
         assert not verify(points, triangles, quads=quads).ok
+
+
+def digests() -> list[str]:
+    """One digest of the report a corruption."""
+    meshes = [corrupt(mixed_grid(seed), Random(seed)) for corrupt, _, _ in CORRUPTIONS for seed in range(2)]
+    reports = [verify(points, triangles, quads=quads) for points, triangles, quads in meshes]
+    return [hashlib.sha256(report.to_json().encode()).hexdigest() for report in reports]
+
+
+@pytest.mark.compiled
+@pytest.mark.obligation("J1", "the verifier says the same of quadrilaterals compiled and interpreted")
+class TestLanes:
+    """Reports are the same to the letter, the stages that decided included."""
+
+    def test_interpreted(self) -> None:
+        code = "from proofs_tests.test_verify_quads import digests; print(digests())"
+        assert in_a_child("-c", code, NUMBA_DISABLE_JIT="1").strip() == str(digests())
+
+    def test_control_digests_differ(self) -> None:
+        assert len(set(digests())) > len(digests()) / 2
 
 
 class TestWitnesses:
@@ -423,7 +446,7 @@ class TestInput:
                 verify(self.SQUARE, quads=[(0, 1, 2, 3)], claims=[claim])
         with pytest.raises(ChoiceError, match="constrained_delaunay cannot be claimed of quadrilaterals"):
             verify(self.SQUARE, quads=[(0, 1, 2, 3)], segments=[(0, 1)], claims=["constrained_delaunay"])
-        with pytest.raises(ChoiceError, match="min_angle= is a bound on triangles"):
+        with pytest.raises(ChoiceError, match="min_angle= is about triangles"):
             verify(self.SQUARE, quads=[(0, 1, 2, 3)], min_angle=20)
         with pytest.raises(ChoiceError, match="convex cannot be claimed without quadrilaterals"):
             verify(self.SQUARE, [(0, 1, 2)], claims=["convex"])

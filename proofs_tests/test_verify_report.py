@@ -47,6 +47,8 @@ NOT_ASKED = {
     Property.MIN_ANGLE,
     Property.MAX_ANGLE,
     Property.MAX_AREA,
+    Property.MAX_LENGTH,
+    Property.VORONOI_DUAL,
 }
 
 

@@ -52,7 +52,8 @@ def said_of(check: CertificateCheck, certificate: str, mesh: str) -> str:
         return "\n".join([f"{certificate} is NOT the certificate of {mesh}:", *map("  {}".format, check.differences)])
     found = "verified again" if check.report is not None else "it says"
     answer = "every claim holds" if check.certificate.ok else "NOT every claim holds"
+    bounds = [f"{name}={bound}" for name, bound in check.certificate.bounds.items() if not isinstance(bound, dict)]
     return (
         f"{certificate} is the certificate of {mesh}, sha256 {check.certificate.mesh['sha256']}\n"
-        f"{found}: {answer} ({', '.join(check.certificate.claims)})"
+        f"{found}: {answer} ({', '.join([*check.certificate.claims, *bounds])})"
     )

@@ -13,6 +13,7 @@ import typer
 
 from exactmesh import __version__
 from exactmesh.cli_arguments import carve_rule, require_file
+from exactmesh.conformance.command import conformance
 from exactmesh.triangulate_command import triangulate
 
 if TYPE_CHECKING:
@@ -36,8 +37,7 @@ app = typer.Typer(
     help="Planar meshes whose every answer can be checked, and the checker for everybody else's.",
 )
 
-_Mesh = Annotated[str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly or .npz.")]
-_AnyMesh = Annotated[
+_Mesh = Annotated[
     str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly, .npz; or what meshio reads.")
 ]
 
@@ -60,11 +60,12 @@ def _common(
 
 
 app.command()(triangulate)
+app.command()(conformance)
 
 
 @app.command()
 def verify(
-    mesh: _AnyMesh,
+    mesh: _Mesh,
     claim: Annotated[
         list[str] | None,
         typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all that fits."),
@@ -85,6 +86,9 @@ def verify(
     min_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is smaller.")] = None,
     max_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is larger.")] = None,
     max_area: Annotated[float | None, typer.Option(metavar="AREA", help="Claim that no triangle is larger.")] = None,
+    within: Annotated[
+        float | None, typer.Option(metavar="DISTANCE", help="How far MESH may be from --domain; default: not at all.")
+    ] = None,
     gabriel: Annotated[
         bool,
         typer.Option("--gabriel", help="Claim that no vertex is inside the circle of a boundary edge or segment."),
@@ -100,6 +104,8 @@ def verify(
     require_file(mesh)
     if domain is None and carve is not None:
         raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
+    if domain is None and within is not None:
+        raise typer.BadParameter("there is no --domain to be near to", param_hint="--within")
     for name, bound in (("min-angle", min_angle), ("max-angle", max_angle), ("max-area", max_area)):
         if bound is None and name in [word.replace("_", "-") for word in claim or ()]:
             raise typer.BadParameter(f"{name} needs a bound, by --{name}", param_hint="--claim")
@@ -111,7 +117,7 @@ def verify(
 
     content = _cells_of(mesh)
     graph = None if domain is None else _domain_of(domain, carve)
-    bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel)
+    bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel, within=within)
     needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
     base = getattr(content, "base", 0)
     with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
@@ -135,7 +141,7 @@ def verify(
 @app.command(name="check-certificate")
 def check_certificate(
     certificate: Annotated[str, typer.Argument(metavar="CERT", help="What verify --json wrote.")],
-    mesh: _AnyMesh,
+    mesh: _Mesh,
     domain: Annotated[
         str | None,
         typer.Option(metavar="FILE", help="What MESH should cover, if verify was told by --domain."),
@@ -178,19 +184,22 @@ def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
 
 
 def _cells_of(path: str) -> "Mesh | GivenMesh":
-    """Return what is on file, as it is in a format of ours or Triangle's."""
-    from exactmesh.adapters.files import is_own_format, read_foreign
+    """Return what is on file, triangles or other cells among it."""
     from exactmesh.errors import FileFormatError
-    from exactmesh.io import read_triangles
     from exactmesh.progress import working
 
     with working(f"reading {path}"):
-        if not is_own_format(path):
-            return read_foreign(path)
-        mesh = read_triangles(path)
+        mesh = _read_any(path)
     if mesh.triangles is None:
         raise FileFormatError("there are no triangles on file, only points", path=path)
     return mesh
+
+
+def _read_any(path: str) -> "Mesh | GivenMesh":
+    from exactmesh.adapters.files import is_own_format, read_foreign
+    from exactmesh.io import read_triangles
+
+    return read_triangles(path) if is_own_format(path) else read_foreign(path)
 
 
 def _write_text(path: str, text: str) -> None:
@@ -212,12 +221,14 @@ def plot(
     require_file(mesh)
     import numpy as np
 
-    from exactmesh.io import read_triangles
     from exactmesh.plot import plot_mesh
     from exactmesh.progress import working
 
     with working(f"drawing {mesh}"):
-        content = read_triangles(mesh)
+        content = _read_any(mesh)
+        quads = getattr(content, "quads", ())
+        if len(quads):
+            raise typer.BadParameter(f"{mesh} has quadrilaterals; verify --html shows them", param_hint="MESH")
         triangles = np.zeros((0, 3), dtype=np.int32) if content.triangles is None else content.triangles
         caption = os.path.basename(mesh) if title is None else title
         plot_mesh(content.points, triangles, output, segments=content.segments, title=caption)
@@ -231,12 +242,13 @@ def info(mesh: _Mesh) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from exactmesh.adapters.files import is_own_format, read_foreign
     from exactmesh.io import read
     from exactmesh.progress import working
-    from exactmesh.summary import facts
+    from exactmesh.summary import facts, facts_of_foreign
 
     with working(f"reading {mesh}"):
-        rows = list(facts(read(mesh)))
+        rows = list(facts(read(mesh)) if is_own_format(mesh) else facts_of_foreign(read_foreign(mesh)))
     table = Table(title=mesh, title_justify="left", show_header=False)
     for name, value in rows:
         table.add_row(name, value)

@@ -4,10 +4,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from exactmesh.adapters import GivenMesh
 from exactmesh.io.model import Mesh
 from exactmesh.quality import statistics_of
 
-__all__ = ["facts"]
+__all__ = ["facts", "facts_of_foreign"]
+
+
+def facts_of_foreign(given: GivenMesh) -> Iterator[tuple[str, str]]:
+    """Yield what there is to say of a mesh of another package: with quadrilaterals, counts and extents."""
+    if not len(given.quads):
+        yield from facts(Mesh(given.points, triangles=given.triangles, segments=given.segments))
+        return
+    yield from facts(Mesh(given.points, segments=given.segments))
+    yield "triangles", f"{len(given.triangles):,}"
+    yield "quadrilaterals", f"{len(given.quads):,}"
 
 
 def facts(mesh: Mesh) -> Iterator[tuple[str, str]]:

@@ -26,12 +26,13 @@ _REMEDY = "--domain FILE says what else it should cover"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shapes:
-    """What is claimed of shapes; None: nothing."""
+    """What is claimed of shapes; None: nothing. And how far the mesh may be from its domain; None: not at all."""
 
     min_angle: float | None = None
     max_angle: float | None = None
     max_area: float | None = None
     gabriel: bool = False
+    within: float | None = None
 
     def with_default(self, claims: Collection[str] | None, default: tuple[Property, ...]) -> Collection[str] | None:
         """Return the claims with GABRIEL, where that was asked for."""
@@ -75,6 +76,7 @@ def checked_against(
             min_angle=shapes.min_angle,
             max_angle=shapes.max_angle,
             max_area=shapes.max_area,
+            within=shapes.within,
             claims=shapes.with_default(claims, DOMAIN_TRIANGULATION if labels is None else _WITH_LABELS),
             orientation=orientation,
         )
@@ -94,6 +96,7 @@ def _checked_given(
         min_angle=shapes.min_angle,
         max_angle=shapes.max_angle,
         max_area=shapes.max_area,
+        within=shapes.within,
         claims=shapes.with_default(claims, default),
         orientation=orientation,
     )

@@ -6,8 +6,7 @@ from typing import Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from exactkernel.arrays import exact_doubles
-from exactmesh.adapters.given import GivenMesh, Indices, index_rows, no_pairs
+from exactmesh.adapters.given import GivenMesh, Indices, index_rows, no_pairs, points_of
 from exactmesh.errors import AdapterError
 
 __all__ = ["WORDS", "accepts", "convert"]
@@ -37,12 +36,9 @@ def convert(mesh: object) -> GivenMesh:
         points, cells = cast("tuple[npt.ArrayLike, npt.ArrayLike]", mesh)
         return _of_pair(points, cells)
     found: Any = mesh
-    return GivenMesh(
-        exact_doubles(found.points),
-        _cells(found, "triangles", 3),
-        _cells(found, "quads", 4),
-        source=f"a {type(mesh).__name__}",
-    )
+    source, triangles, quads = f"a {type(mesh).__name__}", _cells(found, "triangles", 3), _cells(found, "quads", 4)
+    corners = np.concatenate([triangles.ravel(), quads.ravel()])
+    return GivenMesh(points_of(found.points, corners, source), triangles, quads, source=source)
 
 
 def _cells(mesh: object, name: str, width: int) -> Indices:
@@ -56,5 +52,5 @@ def _of_pair(points: npt.ArrayLike, cells: npt.ArrayLike) -> GivenMesh:
     if width not in (3, 4):
         raise AdapterError(f"the cells of the pair have {width} corners each; expected 3 or 4")
     found = index_rows(rows, width, "the second array")
-    doubles = exact_doubles(points)
+    doubles = points_of(points, found, "the pair")
     return GivenMesh(doubles, quads=found) if width == 4 else GivenMesh(doubles, found)

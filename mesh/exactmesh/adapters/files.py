@@ -4,21 +4,33 @@ import contextlib
 import io
 import os
 import warnings
+from types import ModuleType
 from typing import TYPE_CHECKING, cast
 
 from exactmesh.adapters.given import GivenMesh
 from exactmesh.adapters.meshio_mesh import convert as converted
 from exactmesh.adapters.own import convert as own_converted
+from exactmesh.adapters.streams import ByteStream, TextStream
 from exactmesh.errors import ExactMeshError, FileFormatError
 
 if TYPE_CHECKING:
-    import meshio
+    from meshio import Mesh
 
 __all__ = ["WORDS", "MeshioUnavailableError", "accepts", "convert", "is_own_format", "read_foreign"]
 
 WORDS = "paths of files, ours, Triangle's, or with the extra 'mesh' meshio's"
 
 _OWN = (".node", ".ele", ".poly", ".neigh", ".edge", ".npz", ".csv")
+
+
+_BINARY_MEDIT = ".meshb"
+#: The readers of meshio that take open files, and what they expect.
+_STREAMS: dict[str, type[TextStream | ByteStream]] = {
+    **dict.fromkeys(
+        ("abaqus", "avsucd", "medit", "nastran", "netgen", "obj", "off", "permas", "su2", "tecplot"), TextStream
+    ),
+    **dict.fromkeys(("mdpa", "ply"), ByteStream),
+}
 
 
 class MeshioUnavailableError(ExactMeshError, ImportError):
@@ -64,7 +76,18 @@ def read_foreign(path: str) -> GivenMesh:
         raise FileFormatError(str(error).replace("a meshio Mesh", "the mesh", 1), path=path) from None
 
 
-def _read(path: str) -> "meshio.Mesh":
+def _parsed(meshio: ModuleType, path: str) -> "Mesh":
+    """Return what meshio reads: by a stream that ends, if it has one reader for the suffix and that takes streams."""
+    suffix = os.path.splitext(path)[1].lower()
+    kinds = meshio.extension_to_filetypes.get(suffix, [])
+    stream = _STREAMS.get(kinds[0]) if len(kinds) == 1 and suffix != _BINARY_MEDIT else None
+    if stream is None:
+        return cast("Mesh", meshio.read(path))
+    with stream(path) as content:
+        return cast("Mesh", meshio.read(content, kinds[0]))
+
+
+def _read(path: str) -> "Mesh":
     """Read silently: meshio prints, warns, and exits where it cannot read."""
     try:
         import meshio
@@ -76,7 +99,7 @@ def _read(path: str) -> "meshio.Mesh":
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return meshio.read(path)
+            return _parsed(meshio, path)
     except MemoryError:
         raise
     except ImportError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
 
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from exactmesh.errors import AdapterError
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import Orientation, Property
 
-__all__ = ["GivenDomain", "GivenMesh", "Indices", "index_rows", "is_a", "no_pairs", "planar_points"]
+__all__ = ["GivenDomain", "GivenMesh", "Indices", "index_rows", "is_a", "no_pairs", "planar_points", "points_of"]
 
 Indices = npt.NDArray[np.integer]
 
@@ -76,6 +77,12 @@ class GivenMesh:
 def is_a(mesh: object, package: str, *names: str) -> bool:
     """Tell whether the object is of one of these classes of a package, or of one made of them; nothing is imported."""
     return any(base.__name__ in names and base.__module__.partition(".")[0] == package for base in type(mesh).__mro__)
+
+
+def points_of(points: object, corners: Indices, what: str) -> FloatArray:
+    """Return points as exact doubles, of arrays with three columns as :func:`planar_points` does."""
+    in_space = isinstance(points, np.ndarray) and points.ndim == 2 and points.shape[1] == 3
+    return planar_points(points, corners, what) if in_space else exact_doubles(cast(npt.ArrayLike, points))
 
 
 def planar_points(points: object, corners: Indices, what: str) -> FloatArray:

@@ -5,7 +5,9 @@
 True
 """
 
+from exactmesh.conformance.assertions import assert_admissible, assert_constrained_delaunay, assert_delaunay
 from exactmesh.conformance.checking import DEADLINE, MAX_EXAMPLES, MAX_SIZE, check, retry
+from exactmesh.conformance.corpus import BUNDLES, CORPUS, Case, case_named
 from exactmesh.conformance.given import Given, Trait
 from exactmesh.conformance.known import KNOWN, Known
 from exactmesh.conformance.laws import LAWS, Behaviour, Law, Outcome, Task
@@ -14,12 +16,15 @@ from exactmesh.conformance.reference import loaded
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
 
 __all__ = [
+    "BUNDLES",
+    "CORPUS",
     "DEADLINE",
     "KNOWN",
     "LAWS",
     "MAX_EXAMPLES",
     "MAX_SIZE",
     "Behaviour",
+    "Case",
     "Conformance",
     "Counterexample",
     "Given",
@@ -30,6 +35,10 @@ __all__ = [
     "Ruling",
     "Task",
     "Trait",
+    "assert_admissible",
+    "assert_constrained_delaunay",
+    "assert_delaunay",
+    "case_named",
     "check",
     "loaded",
     "retry",

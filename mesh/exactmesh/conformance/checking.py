@@ -14,6 +14,8 @@ from exactmesh.conformance.reference import Mesher, resolved
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
 from exactmesh.conformance.trial import Clock, Evidence, Trial
 from exactmesh.errors import ChoiceError, OptionError
+from exactmesh.pslg import PSLG
+from exactmesh.verify import verify
 
 __all__ = ["DEADLINE", "MAX_EXAMPLES", "MAX_SIZE", "check", "retry"]
 
@@ -90,6 +92,7 @@ def check(
     steps = len(sources) + len(laws)
     with MesherProcess(reference, Limits(seconds=timeout, memory=memory), segments=task is not Task.POINTS) as process:
         process.warm_up()
+        _warm_up()
         clock, trial = Clock(deadline), Trial(process, task, listed)
         exploring, complete = clock.part(_EXPLORING), True
         for done, (family, strategy) in enumerate(sources.items()):
@@ -148,6 +151,14 @@ def _rulings(name: str, task: Task, trial: Trial, evidence: Mapping[Law, Evidenc
         else:  # what never answers keeps no law
             rulings[law] = Ruling(law, silent.fault.outcome if silent and not judged else Outcome.HOLDS, judged)
     return rulings
+
+
+def _warm_up() -> None:
+    """Let the verifier compile, which takes a minute, before the clock is started."""
+    corners, halves = [(0, 0), (3, -1), (6, 0), (3, 1)], [(0, 1, 2), (0, 2, 3)]
+    for triangles in (halves, halves[1:], [*halves, (0, 1, 3)]):
+        verify(corners, triangles, segments=[(0, 2), (1, 3)])
+    verify(corners, halves, domain=PSLG(corners, [(0, 1), (1, 2), (2, 3), (3, 0)]))
 
 
 def _task_of(kind: Task | str) -> Task:

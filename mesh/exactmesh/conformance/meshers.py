@@ -4,6 +4,7 @@ Loaded as a file by the mesher's own process, so that only the mesher's package 
 """
 # ruff: noqa: D103
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -27,9 +28,19 @@ def exactmesh_points(points: Floats) -> Mesh:
     return mesh.points, mesh.triangles
 
 
+@cache
+def _exactmesh_compiled() -> None:
+    """Let exactmesh compile, in its first call, what only segments that cross need."""
+    from exactmesh import PSLG, constrained_delaunay
+
+    cross = PSLG([(0, 0), (3, 1), (0, 1), (3, 0)], [(0, 1), (2, 3)])
+    constrained_delaunay(cross, carve=False, crossings="split")
+
+
 def exactmesh_segments(points: Floats, segments: Integers) -> Mesh:
     from exactmesh import PSLG, constrained_delaunay
 
+    _exactmesh_compiled()
     mesh = constrained_delaunay(PSLG(points, segments), carve=False, crossings="split")
     return mesh.points, mesh.triangles
 
@@ -37,6 +48,7 @@ def exactmesh_segments(points: Floats, segments: Integers) -> Mesh:
 def exactmesh_domain(points: Floats, segments: Integers) -> Mesh:
     from exactmesh import PSLG, constrained_delaunay
 
+    _exactmesh_compiled()
     mesh = constrained_delaunay(PSLG(points, segments, rule="even-odd"), crossings="split")
     return mesh.points, mesh.triangles
 

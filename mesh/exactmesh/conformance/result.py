@@ -38,13 +38,17 @@ class Counterexample:
     def code(self) -> str:
         """Python that tries this input again, in a process of its own, and prints what comes of it."""
         task = "" if self.task is Task.POINTS else f", kind={str(self.task)!r}"
-        points = "[" + ", ".join(f"({x!r}, {y!r})" for x, y in self.given.points.tolist()) + "]"
-        lines = ["from exactmesh.conformance import retry", "", f"points = {points}"]
-        arguments = "points"
-        if self.given.segments is not None:
-            lines.append(f"segments = [{', '.join(f'({a}, {b})' for a, b in self.given.segments.tolist())}]")
-            arguments = "points, segments"
-        return "\n".join([*lines, f"print(retry({self.mesher!r}, {arguments}{task}))"])
+        if self.source.startswith("corpus:"):
+            imported, lines = "case_named, retry", [f"given = case_named({self.source[7:]!r}).make()"]
+            arguments = ["given.points", "given.segments"]
+        else:
+            points = ", ".join(f"({x!r}, {y!r})" for x, y in self.given.points.tolist())
+            imported, lines = "retry", [f"points = [{points}]"]
+            arguments = ["points", "segments"]
+            if self.given.segments is not None:
+                lines.append(f"segments = [{', '.join(f'({a}, {b})' for a, b in self.given.segments.tolist())}]")
+        told = ", ".join([repr(self.mesher), *arguments[: 1 if self.given.segments is None else 2]])
+        return "\n".join([f"from exactmesh.conformance import {imported}", "", *lines, f"print(retry({told}{task}))"])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

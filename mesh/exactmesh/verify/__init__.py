@@ -22,6 +22,7 @@
 from exactmesh.verify.certificate import Certificate, CertificateCheck, check_certificate, read_certificate
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
+from exactmesh.verify.dual import Diagram
 from exactmesh.verify.properties import (
     ADMISSIBLE_MESH,
     CONFORMING_TRIANGULATION,
@@ -36,6 +37,7 @@ from exactmesh.verify.properties import (
     Verdict,
 )
 from exactmesh.verify.report import FORMAT, WITNESSES, Finding, Report, VerificationError, Violation
+from exactmesh.verify.schema import report_schema
 from exactmesh.verify.submesh import Submesh
 from exactmesh.verify.verifier import verify
 
@@ -51,6 +53,7 @@ __all__ = [
     "CertificateCheck",
     "CheckedMesh",
     "ChoiceError",
+    "Diagram",
     "Domain",
     "Finding",
     "Kind",
@@ -64,5 +67,6 @@ __all__ = [
     "Violation",
     "check_certificate",
     "read_certificate",
+    "report_schema",
     "verify",
 ]

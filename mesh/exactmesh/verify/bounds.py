@@ -20,6 +20,7 @@ from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Severity
 from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.severity import MEASURE_BOUND, angle_severity, area_terms, severity_of
+from exactmesh.verify.sizes import Size, size_of
 from exactmesh.verify.triangles import Shapes
 from exactmesh.verify.witness import approximately, exact, finding_of, joined, point_name, triangle_name, twice_area
 
@@ -36,30 +37,37 @@ class Bounds:
     Attributes:
         min_angle, max_angle: for compiled loops.
         max_area: (m,), infinite where there is no bound.
+        size: (m,), or a function of the centroids.
     """
 
     min_angle: AngleBound | None
     max_angle: AngleBound | None
     max_area: FloatArray | None
+    size: "Size | FloatArray | None"
 
     @property
     def properties(self) -> tuple[Property, ...]:
         """What is bounded."""
-        given = (self.min_angle, self.max_angle, self.max_area)
-        names = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
+        given = (self.min_angle, self.max_angle, self.max_area, self.size)
+        names = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA, Property.MAX_LENGTH)
         return tuple(name for name, bound in zip(names, given, strict=True) if bound is not None)
 
 
 def bounds_of(
-    min_angle: float | None, max_angle: float | None, max_area: "float | npt.ArrayLike | None", m: int
+    min_angle: float | None,
+    max_angle: float | None,
+    max_area: "float | npt.ArrayLike | None",
+    size: "Size | npt.ArrayLike | None",
+    m: int,
 ) -> Bounds:
     """Validate bounds for m triangles.
 
     Raises:
-        BoundError: an angle outside 0 to 180 degrees, an area that is NaN, or one for all that is not positive.
-        ShapeError: an array of areas of another shape or dtype.
+        BoundError: an angle outside 0 to 180 degrees, an area that is NaN, or one for all that is not positive, a size
+            that is not positive.
+        ShapeError: an array of areas or sizes of another shape or dtype.
     """
-    return Bounds(_angle(min_angle, "min_angle"), _angle(max_angle, "max_angle"), _areas(max_area, m))
+    return Bounds(_angle(min_angle, "min_angle"), _angle(max_angle, "max_angle"), _areas(max_area, m), size_of(size, m))
 
 
 def _angle(degrees: float | None, name: str) -> AngleBound | None:

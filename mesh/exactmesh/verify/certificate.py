@@ -10,6 +10,7 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.errors import CertificateError
 from exactmesh.verify.checked import CheckedMesh
@@ -17,6 +18,7 @@ from exactmesh.verify.document import FORMAT, document_of, given_document
 from exactmesh.verify.domain import Domain, Outline, constraints_of
 from exactmesh.verify.hashing import mesh_sha256
 from exactmesh.verify.mesh import index_quads, index_triples, points_of
+from exactmesh.verify.properties import Property, Verdict
 from exactmesh.verify.report import Report
 from exactmesh.verify.verifier import Extras, Given, of_mesh, verify
 
@@ -96,11 +98,11 @@ def read_certificate(text: str) -> Certificate:
     """Return the certificate in a text.
 
     Raises:
-        CertificateError: it is no JSON, of another format, or not whole.
+        CertificateError: it is no JSON, of another format, not whole, or contradicts itself.
     """
     try:
         document = json.loads(text)
-    except ValueError as error:
+    except (TypeError, ValueError, RecursionError) as error:
         raise CertificateError(f"no certificate: {error}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         told = document.get("format") if isinstance(document, dict) else None
@@ -113,7 +115,19 @@ def read_certificate(text: str) -> Certificate:
             raise CertificateError(f"the certificate has no proper {path!r}")
     if any(not isinstance(finding, dict) for finding in document["properties"].values()):
         raise CertificateError("the certificate has no proper 'properties'")
+    _require_consistency(document["claims"], document["properties"], ok=document["ok"])
     return Certificate(document)
+
+
+def _require_consistency(claims: list[object], properties: Mapping[str, Mapping[str, object]], *, ok: bool) -> None:
+    """Refuse a certificate that contradicts itself: whoever reads "ok" may rely on the verdicts below it."""
+    if not claims or not all(isinstance(claim, str) and claim in properties for claim in claims):
+        raise CertificateError("the certificate has no proper 'claims': each is one of its 'properties'")
+    for name, finding in properties.items():
+        if name not in tuple(Property) or finding.get("verdict") not in tuple(Verdict):
+            raise CertificateError(f"the certificate has no proper verdict on {name!r}")
+    if ok is not all(properties[str(claim)]["verdict"] == Verdict.HOLDS for claim in claims):
+        raise CertificateError("the certificate contradicts itself: 'ok' is not what its verdicts on the claims say")
 
 
 _PARTS: dict[str, type | tuple[type, ...]] = {
@@ -145,6 +159,9 @@ def check_certificate(
     again: bool = False,
 ) -> CertificateCheck:
     """Tell whether a certificate is that of a mesh: whether the hashes are those of the arrays.
+
+    What it says of the mesh is as good as its source: it carries no signature. ``again`` checks that, too; which claims
+    and bounds were asked for, and how triangles may be listed, is the certificate's own to say.
 
     Args:
         certificate: what :meth:`Report.to_json` wrote.
@@ -184,10 +201,13 @@ def _bounds(certificate: Certificate, arrays: Mapping[str, npt.ArrayLike] | None
             continue
         try:
             bounds[name] = float(cast("float | str", bound))
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise CertificateError(f"the certificate has no proper bound {name!r}") from None
-    for name, array in (arrays or {}).items():
-        bounds[name] = np.asarray(array, dtype=np.float64)
+    for name, array in dict(arrays or {}).items():
+        try:
+            bounds[name] = np.asarray(array, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ShapeError(f"bounds[{name!r}] is no array of numbers") from None
     return bounds
 
 
@@ -216,6 +236,9 @@ def _require_the_same_things(certificate: Certificate, mesh: CheckedMesh) -> Non
 def _differences(certificate: Certificate, mesh: CheckedMesh) -> Iterator[str]:
     own = mesh_sha256(mesh.points, mesh.triangles, mesh.quads)
     yield from _difference("the mesh", certificate.mesh["sha256"], own)
+    for name, rows in (("points", mesh.points), ("triangles", mesh.triangles), ("quads", mesh.quads)):
+        if certificate.mesh[name] != len(rows):
+            yield f"there are {len(rows)} {name}, the certificate says {certificate.mesh[name]}"
     given = given_document(mesh)
     for name in _THINGS:
         theirs, ours = (cast("Mapping[str, object] | None", things[name]) for things in (certificate.given, given))
@@ -253,7 +276,9 @@ def _domain(outline: Outline | None) -> _Domain | None:
 
 
 def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
-    bounds = cast("dict[str, float]", dict(mesh.bounds))  # some may be arrays, where verify takes arrays
+    if Property.VORONOI_DUAL in certificate.claims:
+        raise CertificateError("voronoi_dual cannot be verified again: a certificate does not hold the diagram")
+    numbers = cast("Mapping[str, float]", mesh.bounds)  # these three are none of the arrays
     return verify(
         mesh.points,
         mesh.triangles,
@@ -263,17 +288,27 @@ def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
         labels=mesh.labels,
         claims=certificate.claims,
         orientation=str(certificate.given["orientation"]),
-        **bounds,
+        min_angle=numbers.get("min_angle"),
+        max_angle=numbers.get("max_angle"),
+        max_area=mesh.bounds.get("max_area"),
+        size=mesh.bounds.get("size"),
+        within=numbers.get("within"),
     )
 
 
 def _other_answers(certificate: Certificate, report: Report) -> Iterator[str]:
-    theirs, ours = certificate.answers(), _answers(document_of(report))
+    """Compare the answers, and, of the same version of this library, everything that is said about a property."""
+    document = document_of(report)
+    theirs, ours = certificate.answers(), _answers(document)
     for name in dict.fromkeys([*theirs, *ours]):
         if theirs.get(name) != ours.get(name):
             yield f"{name} is {_said(ours.get(name))}, the certificate says {_said(theirs.get(name))}"
-    if certificate.ok is not report.ok:
-        yield f"the claims {'hold' if report.ok else 'do not hold'}, the certificate says otherwise"
+        elif certificate.document.get("exactmesh") == document["exactmesh"]:
+            findings = (cast("Mapping[str, object]", it["properties"])[name] for it in (certificate.document, document))
+            if len({json.dumps(finding, sort_keys=True) for finding in findings}) > 1:
+                yield f"{name} is {_said(ours[name])}, as the certificate says, but not with its witnesses"
+    if certificate.document.get("severity") != document["severity"]:
+        yield f"the severity is {document['severity']}, the certificate says {certificate.document.get('severity')}"
 
 
 def _said(answer: tuple[object, ...] | None) -> str:

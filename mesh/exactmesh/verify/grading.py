@@ -29,7 +29,7 @@ from exactmesh.verify.severity import (
     area_terms,
     circle_terms,
     diametral_terms,
-    length_terms,
+    length_severity,
     plain_angle,
     ranked,
     severity_of,
@@ -137,18 +137,25 @@ def grade_areas(
 
 
 @jit
-def grade_lengths(limits: FloatArray, points: FloatArray, ends: IndexArray, grades: Grades, excess: FloatArray) -> None:
-    """Grade the lengths of edges (a, b); the excess is the squared ratio to the limit."""
-    for i in range(len(ends)):
-        ux, uxt = two_diff(points[ends[i, 1], 0], points[ends[i, 0], 0])
-        uy, uyt = two_diff(points[ends[i, 1], 1], points[ends[i, 0], 1])
-        limit, limit_tail = two_product(limits[i], limits[i])
-        left, left_tail = dd_multiply(ux, uxt, ux, uxt)
-        right, right_tail = dd_multiply(uy, uyt, uy, uyt)
-        squared, squared_tail = dd_add(left, left_tail, right, right_tail)
-        value = dd_add(squared, squared_tail, -limit, -limit_tail)[0]
-        grades[i] = grade(value, squared + limit, MEASURE_BOUND)
-        excess[i] = squared / limit if limit > 0.0 else math.inf
+def grade_lengths(
+    limits: FloatArray, points: FloatArray, triangles: IntArray, rows: IndexArray, grades: Grades, excess: FloatArray
+) -> None:
+    """Grade triangles by their edges; the excess is the squared ratio of the longest to the limit."""
+    for i in range(len(rows)):
+        found, excess[i] = ROUNDING_SIZED, 0.0
+        limit, limit_tail = two_product(limits[rows[i]], limits[rows[i]])
+        for j in range(3):
+            a, b = triangles[rows[i], j], triangles[rows[i], (j + 1) % 3]
+            ux, uxt = two_diff(points[b, 0], points[a, 0])
+            uy, uyt = two_diff(points[b, 1], points[a, 1])
+            left, left_tail = dd_multiply(ux, uxt, ux, uxt)
+            right, right_tail = dd_multiply(uy, uyt, uy, uyt)
+            squared, squared_tail = dd_add(left, left_tail, right, right_tail)
+            one = grade(dd_add(squared, squared_tail, -limit, -limit_tail)[0], squared + limit, MEASURE_BOUND)
+            if one == RESOLVED or found == ROUNDING_SIZED:
+                found = one
+            excess[i] = max(excess[i], squared / limit if limit > 0.0 else math.inf)
+        grades[i] = found
 
 
 def _unknown(n: int) -> tuple[Grades, FloatArray]:
@@ -209,14 +216,13 @@ def rank_areas(points: FloatArray, k: Context, triangles: IntArray, rows: IndexA
     return ranked(grades, excess, decide)
 
 
-def rank_lengths(points: FloatArray, k: Context, ends: IndexArray, limits: FloatArray) -> Ranking:
-    """Return how their lengths rank edges that are too long; one limit an edge."""
-    grades, excess = _unknown(len(ends))
+def rank_lengths(points: FloatArray, k: Context, triangles: IntArray, rows: IndexArray, limits: FloatArray) -> Ranking:
+    """Return how their edges rank triangles that have one that is too long; ``k`` is for the points as given."""
+    grades, excess = _unknown(len(rows))
     if k.orient2d_bound < math.inf:
-        grade_lengths(limits, points, ends, grades, excess)
+        grade_lengths(limits, points, triangles, rows, grades, excess)
 
     def decide(i: int) -> Severity:
-        a, b = ends[i].tolist()
-        return severity_of(length_terms(points, a, b, float(limits[i])), MEASURE_BOUND)
+        return length_severity(points, triangles[rows[i]].tolist(), float(limits[rows[i]]))
 
     return ranked(grades, excess, decide)

@@ -2,7 +2,8 @@
 
 All numbers are little-endian, 64 bits each. First comes a line of ASCII that says what follows, then for each array the
 numbers of its rows and columns, then its rows. Coordinates and other reals are IEEE doubles, -0.0 as 0.0 and every NaN
-as 0x7ff8000000000000; indices are integers. The order of the rows matters, and so does that of the corners of a cell.
+as 0x7ff8000000000000; indices are integers, after the line "unsigned" where one of them is 2^63 or more. The order of
+the rows matters, and so does that of the corners of a cell.
 """
 
 import hashlib
@@ -16,15 +17,16 @@ from exactkernel.types import FloatArray
 
 if TYPE_CHECKING:
     from exactmesh.verify.domain import Outline
-    from exactmesh.verify.mesh import Integers
-    from exactmesh.verify.witness import IndexArray
 
 __all__ = ["array_sha256", "domain_sha256", "mesh_sha256"]
+
+Integers = npt.NDArray[np.integer]  # of whatever width
+Array = FloatArray | Integers
 
 _ROWS = 1 << 18  # at a time, so that no second copy of a large array is made
 
 
-def mesh_sha256(points: FloatArray, triangles: "Integers", quads: "Integers") -> str:
+def mesh_sha256(points: FloatArray, triangles: Integers, quads: Integers) -> str:
     """Return the name of a mesh: "exactmesh-mesh/1", points (n, 2), triangles (m, 3), quads (k, 4). O(n + m + k)."""
     return _digest(b"exactmesh-mesh/1\n", points, triangles, quads)
 
@@ -39,21 +41,23 @@ def domain_sha256(outline: "Outline") -> str:
     )
 
 
-def array_sha256(array: "FloatArray | IndexArray | Integers") -> str:
+def array_sha256(array: Array) -> str:
     """Return the name of one array of one or two dimensions: "exactmesh-array/1", then the array."""
     return _digest(b"exactmesh-array/1\n", array if array.ndim == 2 else array[:, None])
 
 
-def _digest(head: bytes, *arrays: "FloatArray | IndexArray | Integers") -> str:
+def _digest(head: bytes, *arrays: Array) -> str:
     digest = hashlib.sha256(head)
     for array in arrays:
         digest.update(np.array(array.shape, dtype="<i8").tobytes())
+        if array.dtype.kind == "u" and array.size and int(array.max()) > np.iinfo(np.int64).max:
+            digest.update(b"unsigned\n")  # or they would be those below zero
         for part in _canonical(array):
             digest.update(part.tobytes())
     return digest.hexdigest()
 
 
-def _canonical(array: "FloatArray | IndexArray | Integers") -> Iterator[npt.NDArray[np.generic]]:
+def _canonical(array: Array) -> Iterator[npt.NDArray[np.generic]]:
     real = array.dtype.kind == "f"
     for start in range(0, len(array), _ROWS):
         part = np.array(array[start : start + _ROWS], dtype="<f8" if real else "<i8", order="C")

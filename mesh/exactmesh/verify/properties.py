@@ -74,7 +74,8 @@ class Property(StrEnum):
     """Every segment is a strictly monotone chain of edges of the triangles, exactly collinear, from end to end, by
     index. The ends of a segment of the domain are the corners at their positions, and parts of it may be missing that
     lie outside of the closed domain and outside of all triangles; but where parts are missing, two segments may cross
-    in a corner or in an end of a segment only. UNDECIDED without ADMISSIBLE if some segment is no chain."""
+    in a corner or in an end of a segment only. Within a distance, the chain need not be straight, see
+    :func:`exactmesh.verify.verify`. UNDECIDED without ADMISSIBLE if some segment is no chain."""
     CONSTRAINED_DELAUNAY = "constrained_delaunay"
     """Every triangle has an area, and no point of the set, used or not, that is strictly inside its circumcircle is
     visible from its interior: for no x in the interior of the triangle does the open line segment from x to the point
@@ -82,11 +83,12 @@ class Property(StrEnum):
     unless a triangle has no area."""
     COVERS_DOMAIN = "covers_domain"
     """The union of the triangles is the closed domain: the closure of those faces of its segments that its rule
-    chooses, see :class:`Domain`. A hole's point that lies on a segment is in no face. UNDECIDED without ADMISSIBLE, or
+    chooses, see :class:`Domain`. A hole's point that lies on a segment is in no face. Within a distance, the faces are
+    those of the displaced segments, their chains. UNDECIDED without ADMISSIBLE, or
     if a segment does not run along edges within the triangles (see SEGMENTS_PRESENT)."""
     DOMAIN_POINTS = "domain_points"
-    """Every point of the domain's list that lies in the closed domain is at the position of a corner. UNDECIDED without
-    COVERS_DOMAIN if some point is at no corner."""
+    """Every point of the domain's list that lies in the closed domain is at the position of a corner, or within the
+    distance of one. UNDECIDED without COVERS_DOMAIN if some point is at no corner."""
     NO_NEW_POINTS = "no_new_points"
     """Every corner is at the position of a point of the domain's list: no Steiner points."""
     REGIONS = "regions"
@@ -111,6 +113,15 @@ class Property(StrEnum):
     """Every triangle has an area and no angle above a bound."""
     MAX_AREA = "max_area"
     """No triangle has an area above its bound."""
+    MAX_LENGTH = "max_length"
+    """No triangle has an edge longer than the size that is wanted at its centroid (rounded), or that is given for
+    it."""
+    VORONOI_DUAL = "voronoi_dual"
+    """A Voronoi diagram is the dual of the triangles: to every edge between triangles of different circumcentres, and
+    to every edge of the boundary, one ridge is dual; it ends at the circumcentres, each coordinate the exact one or one
+    of the two doubles next to it, or at infinity, in a direction (if it is given) that points away from the triangles
+    and is perpendicular but for the rounding of its coordinates. Besides, there may be ridges dual to edges between
+    equal circumcentres. UNDECIDED without DELAUNAY, and without triangles."""
     REGION_AREAS = "region_areas"
     """No triangle in a face of the segments that contains the point of a region is larger than the fourth number of the
     region, if that is positive. UNDECIDED without ADMISSIBLE and SEGMENTS_PRESENT."""
@@ -200,6 +211,11 @@ class Kind(StrEnum):
     SMALL_ANGLE = "small_angle"
     LARGE_ANGLE = "large_angle"
     LARGE_AREA = "large_area"
+    LONG_EDGE = "long_edge"
+    MISSING_RIDGE = "missing_ridge"
+    EXTRA_RIDGE = "extra_ridge"
+    WRONG_RAY = "wrong_ray"
+    WRONG_CENTRE = "wrong_centre"
 
 
 #: The default claims with segments: a constrained Delaunay triangulation of the hull of the points.
@@ -275,10 +291,12 @@ _NEEDS = {
     Property.MIN_ANGLE: "min_angle=",
     Property.MAX_ANGLE: "max_angle=",
     Property.MAX_AREA: "max_area=",
+    Property.MAX_LENGTH: "size=",
+    Property.VORONOI_DUAL: "dual=",
     Property.REGION_AREAS: "a domain",
 }
 #: What is claimed wherever it is given.
-_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA)
+_BOUNDS = (Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA, Property.MAX_LENGTH, Property.VORONOI_DUAL)
 
 
 def asked_properties(
@@ -290,7 +308,7 @@ def asked_properties(
         ChoiceError: there are bounds on triangles, but quadrilaterals as well.
     """
     if quads and bounds:
-        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is a bound on triangles, and there are quadrilaterals")
+        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is about triangles, and there are quadrilaterals")
     given = {
         "quadrilaterals": quads,
         "segments or a domain": segments or domain,

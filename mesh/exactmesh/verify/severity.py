@@ -17,7 +17,7 @@ from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
 from exactmesh.verify.properties import Severity
 from exactmesh.verify.report import WITNESSES
-from exactmesh.verify.witness import Ranking, exact
+from exactmesh.verify.witness import Ranking, exact, squared_length
 
 __all__ = [
     "MEASURE_BOUND",
@@ -29,7 +29,7 @@ __all__ = [
     "area_terms",
     "circle_terms",
     "diametral_terms",
-    "length_terms",
+    "length_severity",
     "plain_angle",
     "ranked",
     "severity_of",
@@ -100,11 +100,13 @@ def area_terms(points: FloatArray, corners: Sequence[int], limit: float) -> Term
     return left - right - twice, abs(left) + abs(right) + twice
 
 
-def length_terms(points: FloatArray, a: int, b: int, limit: float) -> Terms:
-    """Return the difference of the squared length and the squared limit, and the permanent."""
-    (ax, ay), (bx, by) = exact(points, a), exact(points, b)
-    squared, limit_squared = (bx - ax) ** 2 + (by - ay) ** 2, Fraction(limit) ** 2
-    return squared - limit_squared, squared + limit_squared
+def length_severity(points: FloatArray, corners: Sequence[int], limit: float) -> Severity:
+    """Return WRONG where for some edge D, the squared length minus the squared limit, is beyond C P."""
+    for i in range(3):
+        squared, limit_squared = squared_length(points, corners[i - 1], corners[i]), Fraction(limit) ** 2
+        if squared - limit_squared > Fraction(MEASURE_BOUND) * (squared + limit_squared):
+            return Severity.WRONG
+    return Severity.ROUNDING
 
 
 def ranked(grades: Grades, excess: FloatArray, decide: Callable[[int], Severity]) -> Ranking:

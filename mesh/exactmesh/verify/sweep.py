@@ -24,7 +24,7 @@ __all__ = ["COVERED_TWICE", "IMPROPER", "PROPER", "swept"]
 
 PROPER = 0
 IMPROPER = 1  # two edges meet elsewhere than in a vertex that they share
-COVERED_TWICE = 2  # the left side of an edge has winding number two
+COVERED_TWICE = 2  # the left side of the second edge has winding number two
 
 _CHUNK = 1 << 14  # vertices between two looks at Ctrl-C
 
@@ -133,8 +133,11 @@ def begin_edges(k: Context, s: Segments, status: Status, v: int, witness: IndexA
     for e in range(s.first_low[v], s.first_low[v + 1]):
         below = status.below[e]
         if below != NIL and s.direction[below] == s.direction[e]:
-            witness[0] = below
-            witness[1] = e
+            upwards = (
+                s.direction[e] > 0
+            )  # otherwise their left sides are below them, and the lower one's is covered twice
+            witness[0] = below if upwards else e
+            witness[1] = e if upwards else below
             return COVERED_TWICE
     return PROPER
 

@@ -28,6 +28,8 @@ from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.constrained import check_constraints, stacked
 from exactmesh.verify.delaunay import check_delaunay, enclosed_points
 from exactmesh.verify.domain import Constraints, Domain, constraints_of
+from exactmesh.verify.dual import Dual
+from exactmesh.verify.duality import check_dual
 from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
@@ -52,6 +54,7 @@ from exactmesh.verify.properties import (
     orientation_of,
 )
 from exactmesh.verify.report import Finding, Report
+from exactmesh.verify.sizes import Size, check_lengths, sizes_at
 from exactmesh.verify.submesh import with_numbers
 from exactmesh.verify.triangles import Shapes, check_angles, check_orientation, classified
 from exactmesh.verify.witness import IndexArray, joined
@@ -71,7 +74,9 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -89,7 +94,9 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report: ...
@@ -106,7 +113,9 @@ def verify(
     min_angle: float | None = None,
     max_angle: float | None = None,
     max_area: float | npt.ArrayLike | None = None,
+    size: Size | npt.ArrayLike | None = None,
     within: float | None = None,
+    dual: Dual | None = None,
     claims: Collection[Property | str] | None = None,
     orientation: Orientation | str | None = None,
 ) -> Report:
@@ -132,10 +141,14 @@ def verify(
             of what a mesh's input does not allow: a triangle in the corner of a small input angle is a violation, too.
         max_area: claims that no triangle has a larger area; one positive number, or (m,) with infinity or what is not
             positive where there is no bound.
+        size: claims that no triangle has an edge longer than its size: a positive number, (m,), or a function that is
+            called once with the centroids (m, 2) and returns one or m of them.
         within: how far the mesh may be from the domain, 0 to infinity: each segment may be a chain of edges ever
             forward, all vertices of which are so near to it, and each corner may be so far from its point of the
             domain. What is said of segments and of the domain is then said of the displaced ones, and
             ``Report.distance`` says how far they are, exactly. None: not at all.
+        dual: a Voronoi diagram, claimed to be the dual of the triangles: :class:`exactmesh.Voronoi`,
+            ``scipy.spatial.Voronoi``, or Triangle's arrays (vertices, edges, origins of rays, their directions).
         claims: what ``Report.ok`` is about. None claims a Delaunay triangulation of all the points, that is
             everything up to DELAUNAY; with segments, a constrained one
             (:data:`~exactmesh.verify.CONSTRAINED_TRIANGULATION`); with a domain, a constrained Delaunay triangulation
@@ -151,7 +164,7 @@ def verify(
         CoordinateError: a coordinate is not exactly a double.
         NonFiniteError: a coordinate of the domain is not finite.
         PSLGError: the domain has segments without length or without ends, or none of its faces could be even or odd.
-        BoundError: an angle outside of 0 to 180 degrees, an area or a distance that is none.
+        BoundError: an angle outside of 0 to 180 degrees, an area, a size or a distance that is none.
         ChoiceError: an unknown claim, rule or orientation, a claim about something that was not given, or one that
             has no meaning for quadrilaterals.
         AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
@@ -176,12 +189,12 @@ def verify(
     doubles = points_of(cast(npt.ArrayLike, cells.points))
     triples = index_triples(() if cells.triangles is None else cells.triangles)
     fours = index_quads(() if cells.quads is None else cells.quads)
-    bounds = bounds_of(min_angle, max_angle, max_area, len(triples))
+    bounds = bounds_of(min_angle, max_angle, max_area, size, len(triples))
     asked = asked_properties(
         segments=extras.segments is not None,
         domain=extras.domain is not None,
         labels=extras.labels is not None,
-        bounds=bounds.properties,
+        bounds=bounds.properties if dual is None else (*bounds.properties, Property.VORONOI_DUAL),
         quads=bool(len(fours)),
     )
     claimed = claimed_properties(claims, asked, extras.usual)
@@ -194,10 +207,12 @@ def verify(
     }
     failed = tuple(property_ for property_, finding in findings.items() if finding.verdict is Verdict.FAILS)
     counts = np.zeros((2, len(Stage)), dtype=np.int64)
+    sizes = None if failed and callable(bounds.size) else sizes_at(bounds.size, doubles, triples)
     if not failed:
+        bounds = replace(bounds, size=sizes)
         with np.errstate(over="ignore", invalid="ignore"):  # interpreted, a numpy scalar warns where a double does not
             mesh, positions = prepared_mesh(doubles, triples, fours, stacked(constraints.outline))
-            findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, decided))
+            findings.update(check_mesh(mesh, chosen, constraints, positions, bounds, dual, decided))
         counts = mesh.context.counts
     elif Property.FINITE not in failed:
         findings[Property.DISTINCT_POINTS] = check_distinct(doubles, first_at_position(doubles))
@@ -209,7 +224,13 @@ def verify(
         segments=constraints.segments,
         labels=constraints.labels,
         domain=constraints.outline,
-        bounds=_numbers(min_angle=min_angle, max_angle=max_angle, max_area=max_area, within=within),
+        bounds=_numbers(
+            min_angle=min_angle,
+            max_angle=max_angle,
+            max_area=max_area,
+            size=sizes,
+            within=within,
+        ),
         orientation=chosen,
     )
     return Report(
@@ -282,6 +303,7 @@ def check_mesh(
     constraints: Constraints,
     positions: FloatArray,
     bounds: Bounds,
+    dual: Dual | None,
     decided: tuple[Property, ...],
 ) -> dict[Property, Finding]:
     """Decide everything about finite points and valid cells; ``positions`` are those of the domain."""
@@ -307,6 +329,8 @@ def check_mesh(
     }
     findings.update(_against_points(mesh, shapes, tiling, unused))
     findings.update(_against_bounds(mesh, shapes, upright, bounds))
+    if dual is not None:
+        findings[Property.VORONOI_DUAL] = check_dual(mesh, tiling.links, upright, dual, findings[Property.DELAUNAY])
     boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
     marks = np.zeros(len(tiling.links.slots), dtype=np.uint8)
     if constraints.any:
@@ -325,13 +349,15 @@ def check_mesh(
 
 
 def _against_bounds(mesh: Mesh, shapes: Shapes, upright: IntArray, bounds: Bounds) -> dict[Property, Finding]:
-    """MIN_ANGLE, MAX_ANGLE, MAX_AREA, as far as they were given."""
+    """MIN_ANGLE, MAX_ANGLE, MAX_AREA, MAX_LENGTH, as far as they were given."""
     findings = {}
     for property_, angle in ((Property.MIN_ANGLE, bounds.min_angle), (Property.MAX_ANGLE, bounds.max_angle)):
         if angle is not None:
             findings[property_] = check_angle_bound(mesh, shapes, upright, angle, property_)
     if bounds.max_area is not None:
         findings[Property.MAX_AREA] = check_areas(mesh, upright, bounds.max_area, Property.MAX_AREA)
+    if bounds.size is not None and not callable(bounds.size):
+        findings[Property.MAX_LENGTH] = check_lengths(mesh, bounds.size)
     return findings
 
 

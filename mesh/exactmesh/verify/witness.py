@@ -19,11 +19,13 @@ __all__ = [
     "exact",
     "finding_of",
     "joined",
+    "places_of",
     "point_name",
     "rows_at_vertices",
     "rows_of_triangles",
     "scalar_product",
     "sign_of",
+    "squared_length",
     "triangle_name",
     "twice_area",
 ]
@@ -54,6 +56,12 @@ def scalar_product(points: FloatArray, a: int, b: int, p: int) -> Fraction:
     return (px - ax) * (bx - px) + (py - ay) * (by - py)
 
 
+def squared_length(points: FloatArray, a: int, b: int) -> Fraction:
+    """Return the squared length of an edge."""
+    (ax, ay), (bx, by) = exact(points, a), exact(points, b)
+    return (bx - ax) ** 2 + (by - ay) ** 2
+
+
 def approximately(value: Fraction) -> str:
     """Return three digits of a fraction, whatever its exponent."""
     return f"{Decimal(value.numerator) / Decimal(value.denominator):.3g}"
@@ -62,6 +70,11 @@ def approximately(value: Fraction) -> str:
 def point_name(points: FloatArray, vertex: int) -> str:
     """Return "7 (0.5, 1.0)"."""
     return f"{vertex} ({float(points[vertex, 0])!r}, {float(points[vertex, 1])!r})"
+
+
+def places_of(points: FloatArray, rows: Iterable[int]) -> tuple[tuple[float, float], ...]:
+    """Return some positions, for witnesses that are about no vertex."""
+    return tuple((float(points[row, 0]), float(points[row, 1])) for row in rows)
 
 
 def triangle_name(points: FloatArray, corners: Iterable[int]) -> str:
