@@ -13,7 +13,7 @@ KERNEL, MESH = ROOT / "kernel" / "exactkernel", ROOT / "mesh" / "exactmesh"
 #: Rooms that talk to people and files: algorithms know nothing of them.
 OUTER_ROOMS = (
     *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
-    *("certificate_file", "html", "triangulate_file", "verify_file", "__main__"),
+    *("certificate_file", "conformance", "html", "triangulate_file", "verify_file", "__main__"),
 )
 #: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
 VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")
