@@ -381,6 +381,9 @@ class TestKnockedOut:
     ) -> None:
         monkeypatch.setattr(module, name, instead)
         for seed in range(4):
-            if next(contradictions(seed), None) is not None:
+            try:
+                if next(contradictions(seed), None) is not None:
+                    return
+            except ValueError:  # what rests on the check cannot do without it
                 return
         raise AssertionError(f"nobody misses {name}")
