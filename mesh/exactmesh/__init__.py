@@ -14,6 +14,7 @@ from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
     AdapterError,
     BoundError,
+    CertificateError,
     ChoiceError,
     ClipError,
     CollinearPointsError,
@@ -69,6 +70,7 @@ __all__ = [
     "AdapterError",
     "Arrangement",
     "BoundError",
+    "CertificateError",
     "Carve",
     "ChoiceError",
     "ClipError",
