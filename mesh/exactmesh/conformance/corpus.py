@@ -180,8 +180,9 @@ def case_named(name: str) -> Case:
     Raises:
         ChoiceError: there is none of that name.
 
+    >>> from exactmesh.conformance import case_named
     >>> case_named("7/5").make().segments.shape
-    (7, 2)
+    (6, 2)
     """
     if name in CORPUS:
         return CORPUS[name]

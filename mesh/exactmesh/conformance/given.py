@@ -34,6 +34,15 @@ class Trait(StrEnum):
     answer; but if there are triangles, they do not overlap."""
 
 
+def digits(value: float) -> int:
+    """Return how long the number is when it is written, ".0" left out.
+
+    >>> digits(60.0), digits(62.9)
+    (2, 4)
+    """
+    return len(repr(value).removesuffix(".0"))
+
+
 @dataclass(frozen=True, eq=False)
 class Given:
     """Points, and for meshers that take them segments.
@@ -73,7 +82,12 @@ class Given:
     @property
     def size(self) -> tuple[int, int, int, int]:
         """What makes an input smaller than another: fewer traits, fewer points, fewer segments, fewer digits."""
-        return len(self.traits), len(self.points), 0 if self.segments is None else len(self.segments), len(self.literal)
+        return (
+            len(self.traits),
+            len(self.points),
+            0 if self.segments is None else len(self.segments),
+            sum(digits(x) for x in self.points.ravel().tolist()),
+        )
 
     @cached_property
     def traits(self) -> frozenset[Trait]:

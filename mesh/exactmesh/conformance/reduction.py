@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from exactmesh.conformance.given import Given
+from exactmesh.conformance.given import Given, digits
 
 __all__ = ["reduced"]
 
@@ -97,7 +97,7 @@ def _simplify(given: Given, v: int, axis: int, accept: Callable[[Given], bool]) 
     """Try simpler values of one coordinate, the simplest first, until one is accepted."""
     value = float(given.points[v, axis])
     for simpler in _simpler(value):
-        if len(repr(simpler)) < len(repr(value)):
+        if digits(simpler) < digits(value):
             points = given.points.copy()
             points[v, axis] = simpler
             if accept(Given(points, given.segments)):

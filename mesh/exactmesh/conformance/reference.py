@@ -68,8 +68,9 @@ def loaded(mesher: str, task: Task) -> Callable[..., object]:
     Raises:
         MesherError: it cannot be imported.
 
-    >>> from exactmesh.conformance import Task
-    >>> loaded("exactmesh", Task.POINTS)([(0, 0), (1, 0), (0, 1)]).tolist()
+    >>> from exactmesh.conformance import Task, loaded
+    >>> points, triangles = loaded("exactmesh", Task.POINTS)([(0, 0), (1, 0), (0, 1)])
+    >>> triangles.tolist()
     [[0, 1, 2]]
     """
     reference, _ = resolved(mesher, task)

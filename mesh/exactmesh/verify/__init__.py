@@ -22,6 +22,7 @@
 from exactmesh.verify.certificate import Certificate, CertificateCheck, check_certificate, read_certificate
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.domain import Domain
+from exactmesh.verify.dual import Diagram
 from exactmesh.verify.properties import (
     ADMISSIBLE_MESH,
     CONFORMING_TRIANGULATION,
@@ -52,6 +53,7 @@ __all__ = [
     "CertificateCheck",
     "CheckedMesh",
     "ChoiceError",
+    "Diagram",
     "Domain",
     "Finding",
     "Kind",

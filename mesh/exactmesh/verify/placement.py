@@ -15,6 +15,7 @@ from gmpy2 import mpq
 from exactkernel.context import Context
 from exactkernel.jit import jit
 from exactkernel.orient2d import orient2d_adaptive
+from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray
 from exactmesh.verify.chains import IN_DOMAIN, Marks, chained
 from exactmesh.verify.cover import Placed
@@ -150,6 +151,20 @@ def enters(k: Context, points: FloatArray, links: Links, a: int, x: float, y: fl
     return False
 
 
+@jit
+def find_entering(
+    k: Context, points: FloatArray, links: Links, corners: IndexArray, ends: FloatArray, found: Flags
+) -> None:
+    """Tell which segments begin or end in the cells, of those that are not known to be needed."""
+    for i in range(len(found)):
+        a, b = corners[i, 0], corners[i, 1]
+        found[i] = (
+            found[i]
+            or enters(k, points, links, a, ends[i, 1, 0], ends[i, 1, 1])
+            or enters(k, points, links, b, ends[i, 0, 0], ends[i, 0, 1])
+        )
+
+
 def _optional(
     mesh: Mesh,
     links: Links,
@@ -168,8 +183,7 @@ def _optional(
     alone = (links.kinds[slots] == BOUNDARY) & (times[slots] == 1) & (marks[slots] & IN_DOMAIN == 0)
     needed[owner[alone]] = True
     ends = placed.outline.segments[found.rows]
-    for i in np.flatnonzero(~needed).tolist():
-        (a, b), (p, q) = placed.corner[ends[i]].tolist(), positions[ends[i]].tolist()
-        k, points = mesh.context, mesh.coordinates
-        needed[i] = enters(k, points, links, a, q[0], q[1]) or enters(k, points, links, b, p[0], p[1])
+    k, points = mesh.context, mesh.coordinates
+    find_entering(k, points, links, placed.corner[ends], positions[ends], needed)
+    raise_if_interrupted()
     return ~needed

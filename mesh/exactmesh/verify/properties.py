@@ -74,7 +74,8 @@ class Property(StrEnum):
     """Every segment is a strictly monotone chain of edges of the triangles, exactly collinear, from end to end, by
     index. The ends of a segment of the domain are the corners at their positions, and parts of it may be missing that
     lie outside of the closed domain and outside of all triangles; but where parts are missing, two segments may cross
-    in a corner or in an end of a segment only. UNDECIDED without ADMISSIBLE if some segment is no chain."""
+    in a corner or in an end of a segment only. Within a distance, the chain need not be straight, see
+    :func:`exactmesh.verify.verify`. UNDECIDED without ADMISSIBLE if some segment is no chain."""
     CONSTRAINED_DELAUNAY = "constrained_delaunay"
     """Every triangle has an area, and no point of the set, used or not, that is strictly inside its circumcircle is
     visible from its interior: for no x in the interior of the triangle does the open line segment from x to the point
@@ -82,11 +83,12 @@ class Property(StrEnum):
     unless a triangle has no area."""
     COVERS_DOMAIN = "covers_domain"
     """The union of the triangles is the closed domain: the closure of those faces of its segments that its rule
-    chooses, see :class:`Domain`. A hole's point that lies on a segment is in no face. UNDECIDED without ADMISSIBLE, or
+    chooses, see :class:`Domain`. A hole's point that lies on a segment is in no face. Within a distance, the faces are
+    those of the displaced segments, their chains. UNDECIDED without ADMISSIBLE, or
     if a segment does not run along edges within the triangles (see SEGMENTS_PRESENT)."""
     DOMAIN_POINTS = "domain_points"
-    """Every point of the domain's list that lies in the closed domain is at the position of a corner. UNDECIDED without
-    COVERS_DOMAIN if some point is at no corner."""
+    """Every point of the domain's list that lies in the closed domain is at the position of a corner, or within the
+    distance of one. UNDECIDED without COVERS_DOMAIN if some point is at no corner."""
     NO_NEW_POINTS = "no_new_points"
     """Every corner is at the position of a point of the domain's list: no Steiner points."""
     REGIONS = "regions"
@@ -306,7 +308,7 @@ def asked_properties(
         ChoiceError: there are bounds on triangles, but quadrilaterals as well.
     """
     if quads and bounds:
-        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is a bound on triangles, and there are quadrilaterals")
+        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is about triangles, and there are quadrilaterals")
     given = {
         "quadrilaterals": quads,
         "segments or a domain": segments or domain,

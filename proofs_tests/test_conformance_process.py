@@ -1,0 +1,214 @@
+"""What a mesher does to its process does not hurt; what is no mesh is told; names lead to meshers or to errors."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from proofs_tests import planted_meshers
+
+from exactmesh import ChoiceError, ExactMeshError, MesherError, OptionError
+from exactmesh.conformance import Behaviour, Given, Outcome, Trait, check, loaded, retry
+from exactmesh.conformance.judge import check_legal
+from exactmesh.conformance.laws import Task
+from exactmesh.conformance.process import Fate, Limits, MesherProcess
+from exactmesh.conformance.reduction import reduced
+
+PLACE = "proofs_tests.planted_meshers"
+MANY = Given.of([(x, y) for x in range(5) for y in range(5)])
+FEW = Given.of([(0, 0), (1, 0), (0, 1)])
+TWICE = Given.of([(0, 0), (1, 0), (0, 1), (0, 0)])
+
+
+def is_legal(given: Given) -> bool:
+    try:
+        check_legal(Task.SEGMENTS, given)
+    except ExactMeshError:
+        return False
+    return True
+
+
+@pytest.mark.obligation("B4", "whatever a mesher does to its process, the next input is tried, and this process lives")
+class TestWhateverItDoes:
+    """Law: a mesher may end its process, crash, hang, raise or eat memory; what it did is told, and it answers the next
+    input as if nothing had happened."""
+
+    @pytest.mark.parametrize(
+        ("name", "given", "fate", "told"),
+        [
+            ("exits", MANY, Fate.DIED, "ended the process with exit code 3"),
+            ("leaves", MANY, Fate.DIED, "exit code 1: that is too much"),
+            ("segfaults", MANY, Fate.DIED, "ended the process by SIGSEGV"),
+            ("hangs", TWICE, Fate.HUNG, "did not return within 1.5 s"),
+            ("raises", Given.of([(0, 0), (1, 1), (2, 2)]), Fate.REFUSED, "ZeroDivisionError: the first three points"),
+            ("eats_memory", MANY, Fate.REFUSED, "MemoryError"),
+            ("returns_nothing", FEW, Fate.NO_MESH, "it returned None"),
+            ("right", MANY, Fate.ANSWERED, ""),
+            ("noisy", MANY, Fate.ANSWERED, ""),
+        ],
+    )
+    def test_is_told(self, name: str, given: Given, fate: Fate, told: str) -> None:
+        with MesherProcess(f"{PLACE}:{name}", Limits(seconds=1.5)) as process:
+            for _ in range(2):
+                answer = process.ask(given)
+                assert answer.fate is fate
+                assert told in answer.message
+            other = Given.of([(0, 0), (2, 0), (3, 3), (0, 2), (1, 7)])
+            assert process.ask(other).fate is Fate.ANSWERED
+
+    def test_its_children_end_with_it(self, tmp_path: Path) -> None:
+        tmp_path.joinpath("spawner.py").write_text(
+            "import subprocess, sys, time\n"
+            "def mesh(points):\n"
+            "    child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(60)'])\n"
+            f"    open({str(tmp_path / 'pid')!r}, 'w').write(str(child.pid))\n"
+            "    time.sleep(60)\n"
+        )
+        with MesherProcess(f"{tmp_path / 'spawner.py'}:mesh", Limits(seconds=2.0, start_seconds=2.0)) as process:
+            assert process.ask(FEW).fate is Fate.HUNG
+        pid = int(tmp_path.joinpath("pid").read_text())
+        status = Path(f"/proc/{pid}/stat")
+        assert not status.exists() or status.read_text().split()[2] == "Z"
+
+    def test_what_is_no_mesh_is_told(self, tmp_path: Path) -> None:
+        answers = {
+            "floats": ("[(0.0, 1.0, 2.0)]", "triangles are float64, not integers"),
+            "pairs": ("np.array([[0, 1]])", "triangles have shape (1, 2), not (m, 3)"),
+            "words": ("'no such file'", "no such file"),
+            "solid": ("(np.zeros((3, 3)), [(0, 1, 2)])", "points are float64 of shape (3, 3)"),
+            "number": ("7", "int is no mesh"),
+        }
+        functions = (f"def {name}(points): return {code}\n" for name, (code, _) in answers.items())
+        source = "import numpy as np\n" + "".join(functions)
+        tmp_path.joinpath("answers.py").write_text(source)
+        for name, (_, told) in answers.items():
+            result = retry(f"{tmp_path / 'answers.py'}:{name}", FEW.points)
+            example = result.rulings[Behaviour.ANSWERS].counterexample
+            assert result.outcome("answers") is Outcome.WRONG
+            assert example is not None
+            assert told in example.sentence
+
+    def test_every_kind_of_mesh_is_understood(self, tmp_path: Path) -> None:
+        answers = (
+            "[(0, 1, 2)]",
+            "np.array([[0, 1, 2]], dtype=np.uint8)",
+            "(points[::-1], [(0, 2, 1)])",
+            "{'vertices': points, 'triangles': [(0, 1, 2)]}",
+            "exactmesh.delaunay(points)",
+        )
+        source = "import numpy as np, exactmesh\n" + "".join(
+            f"def f{i}(points): return {code}\n" for i, code in enumerate(answers)
+        )
+        tmp_path.joinpath("answers.py").write_text(source)
+        for i in range(len(answers)):
+            result = retry(f"{tmp_path / 'answers.py'}:f{i}", FEW.points, timeout=60.0)
+            assert result.ok, str(result)
+
+
+class TestNames:
+    """Law: a mesher is named by itself, by module:function, by file:function, or by a known name; what leads nowhere is
+    a MesherError that says why."""
+
+    def test_a_function(self) -> None:
+        assert check(planted_meshers.right, max_examples=2, max_size=6).ok
+        assert not check(planted_meshers.drops_a_hull_triangle, max_examples=2, max_size=6).ok  # control
+
+    @pytest.mark.parametrize(
+        ("name", "told"),
+        [
+            ("nobody", "neither module:function nor a known mesher: exactmesh, "),
+            ("no_such_module:f", "cannot be imported: ModuleNotFoundError"),
+            ("math:no_such_function", "there is no 'no_such_function' in math"),
+            ("math:pi", "cannot be called: it is float"),
+            ("no/such/file.py:f", "there is no file"),
+            (":f", "is no module:function"),
+        ],
+    )
+    def test_what_leads_nowhere(self, name: str, told: str) -> None:
+        with pytest.raises(MesherError, match=re.escape(told)):
+            retry(name, FEW.points)
+
+    def test_what_no_other_process_can_import(self) -> None:
+        def inner(points: object) -> object:
+            return points
+
+        for mesher in (inner, lambda points: points):
+            with pytest.raises(MesherError, match="define it with def at the top of a module"):
+                retry(mesher, FEW.points)
+
+    def test_a_known_mesher_does_what_it_does(self) -> None:
+        with pytest.raises(MesherError, match="scipy is known for points, not for segments"):
+            retry("scipy", FEW.points, [(0, 1)])
+        made = loaded("exactmesh", Task.POINTS)(FEW.points)
+        assert isinstance(made, tuple)
+        assert made[1].tolist() == [[0, 1, 2]]
+
+    def test_a_mesher_that_dies_when_it_is_imported(self, tmp_path: Path) -> None:
+        tmp_path.joinpath("deadly.py").write_text("import os\nos._exit(5)\n")
+        with pytest.raises(MesherError, match="importing it ended the process with exit code 5"):
+            retry(f"{tmp_path / 'deadly.py'}:f", FEW.points)
+
+    def test_a_script_without_a_guard_does_not_run_for_ever(self, tmp_path: Path) -> None:
+        script = tmp_path / "script.py"
+        source = "from exactmesh.conformance import retry\ndef f(points): return [(0, 1, 2)]\n"
+        call = "print(retry(f, [(0, 0), (1, 0), (0, 1)]).ok)\n"
+        script.write_text(source + call)
+        run = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False, env=os.environ)
+        assert run.returncode == 1
+        assert "put the call under if __name__ == '__main__'" in run.stderr
+        script.write_text(f"{source}if __name__ == '__main__':\n    {call}")  # control
+        run = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False, env=os.environ)
+        assert run.stdout == "True\n"
+
+    @pytest.mark.parametrize(
+        ("arguments", "error"),
+        [
+            ({"kind": "solid"}, ChoiceError),
+            ({"properties": ["acute"]}, ChoiceError),
+            ({"max_examples": 0}, OptionError),
+            ({"timeout": -1.0}, OptionError),
+            ({"deadline": float("nan")}, OptionError),
+        ],
+    )
+    def test_wrong_arguments(self, arguments: dict[str, object], error: type[Exception]) -> None:
+        with pytest.raises(error):
+            check("exactmesh", **arguments)  # type: ignore[arg-type]  # that is the point
+
+
+class TestReduction:
+    """Law: what is left of an input breaks the law still, and no single point or segment can be left out."""
+
+    def test_points(self) -> None:
+        wanted = Given.of(np.random.default_rng(0).random((40, 2)) * 100)
+
+        def still(given: Given) -> bool:
+            return bool((given.points[:, 0] > 50).sum() >= 3)
+
+        small = reduced(wanted, is_legal, still)
+        assert len(small.points) == 3
+        assert (small.points == np.round(small.points)).all()
+        assert small.traits == frozenset()
+        for v in range(3):
+            assert not still(Given(np.delete(small.points, v, axis=0)))
+
+    def test_segments(self) -> None:
+        ring = [(i, (i + 1) % 8) for i in range(8)]
+        wanted = Given.of([(np.cos(i), np.sin(i)) for i in range(8)], ring)
+        small = reduced(wanted, is_legal, lambda given: given.segments is not None and len(given.segments) >= 2)
+        assert small.segments is not None
+        assert len(small.segments) == 2
+        assert len(small.points) <= 4
+
+    def test_control_nothing_is_left_out_of_what_is_needed(self) -> None:
+        assert reduced(MANY, is_legal, lambda given: len(given.points) >= 25).size <= MANY.size
+        assert len(reduced(MANY, is_legal, lambda given: len(given.points) >= 25).points) == 25
+
+    def test_traits_are_not_taken_on(self) -> None:
+        wanted = Given.of([(0.25, 0), (1.5, 0.125), (0, 1), (2, 2.0625)])
+        small = reduced(wanted, is_legal, lambda given: len(given.points) == 4)
+        assert small.traits == frozenset()
+        flat = Given.of([(0, 0), (0, 0), (1e300, 0)])
+        assert flat.traits == {Trait.FLAT, Trait.DUPLICATES, Trait.EXTREME}
