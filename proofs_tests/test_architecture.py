@@ -15,12 +15,15 @@ OUTER_ROOMS = (
     *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
     *("certificate_file", "html", "triangulate_file", "verify_file", "__main__"),
 )
-#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of. The adapters, which turn objects
-#: into arrays, are asked for those of meshes alone, and know no algorithm either.
-VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors", "exactmesh.adapters")
-ADAPTERS_MAY = (*VERIFIER_MAY, "exactmesh.io")
-#: What a module may import within a function only: a report's page is made in a room of its own when it is asked for.
-LATER = {"exactmesh.verify.report": "exactmesh.html"}
+#: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
+VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")
+#: The adapters turn objects into arrays for it, and know no algorithm either, but the formats of files.
+ADAPTERS_MAY = (*VERIFIER_MAY, "exactmesh.adapters", "exactmesh.io")
+#: Who may ask them for anybody's meshes, besides the outer rooms.
+ADAPTED = ("exactmesh.adapters", "exactmesh.conformance")
+#: What a module may import within a function only: a report's page is made in a room of its own when it is asked for,
+#: and a mesh that is not given as arrays is taken apart there.
+LATER = {"exactmesh.verify.report": "exactmesh.html", "exactmesh.verify.verifier": "exactmesh.adapters"}
 #: Where everything comes together.
 EXEMPT = ("exactmesh", *(f"exactmesh.{room}" for room in OUTER_ROOMS))
 
@@ -71,6 +74,8 @@ def forbidden(module: str, source: str) -> list[str]:
             bad = False
         else:
             bad = any(is_within(name, f"exactmesh.{room}") for room in OUTER_ROOMS)
+            adapted = any(is_within(module, room) for room in ADAPTED)
+            bad = bad or (is_within(name, "exactmesh.adapters") and not adapted)
         if bad and module in LATER and is_within(name, LATER[module]):
             bad = name in imports(at_once(source))
         if bad:
@@ -100,6 +105,9 @@ class TestImportDirections:
             ("exactmesh.verify.report", "from exactmesh.html import page_of"),
             ("exactmesh.verify.mesh", "def f():\n    from exactmesh.html import page_of"),
             ("exactmesh.adapters.own", "from exactmesh.delaunay import delaunay"),
+            ("exactmesh.delaunay", "from exactmesh.adapters import given_mesh"),
+            ("exactmesh.verify.verifier", "from exactmesh.adapters import given_mesh"),
+            ("exactmesh.verify.mesh", "def f():\n    from exactmesh.adapters import given_mesh"),
             ("exactmesh.delaunay", "from exactmesh.io import files"),
             ("exactmesh.delaunay", "from exactmesh import plot"),
             ("exactmesh.quadedge", "import exactmesh.cli"),

@@ -446,7 +446,7 @@ class TestInput:
                 verify(self.SQUARE, quads=[(0, 1, 2, 3)], claims=[claim])
         with pytest.raises(ChoiceError, match="constrained_delaunay cannot be claimed of quadrilaterals"):
             verify(self.SQUARE, quads=[(0, 1, 2, 3)], segments=[(0, 1)], claims=["constrained_delaunay"])
-        with pytest.raises(ChoiceError, match="min_angle= is a bound on triangles"):
+        with pytest.raises(ChoiceError, match="min_angle= is about triangles"):
             verify(self.SQUARE, quads=[(0, 1, 2, 3)], min_angle=20)
         with pytest.raises(ChoiceError, match="convex cannot be claimed without quadrilaterals"):
             verify(self.SQUARE, [(0, 1, 2)], claims=["convex"])

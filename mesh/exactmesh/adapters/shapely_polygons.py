@@ -40,10 +40,9 @@ def convert(mesh: object) -> GivenMesh:
     before quadrilaterals, each kind in its order. O(n log n)."""
     polygons = _polygons(mesh)
     shapely: Any = sys.modules["shapely"]
-    rings = shapely.get_exterior_ring(polygons)
-    sides = shapely.get_num_coordinates(rings) - 1
+    sides = shapely.get_num_coordinates(polygons) - 1  # the first vertex is there again, and there are no holes
     _require_cells(polygons, sides, shapely)
-    coordinates: FloatArray = shapely.get_coordinates(rings)
+    coordinates: FloatArray = shapely.get_coordinates(polygons)
     first = np.cumsum(sides + 1) - (sides + 1)
     parts = [first[sides == k][:, None] + np.arange(k) for k in _SIDES]
     points, numbers = _merged(np.concatenate([coordinates[part.ravel()] for part in parts]))
@@ -62,15 +61,15 @@ def _polygons(mesh: object) -> npt.NDArray[np.object_]:
     """Return the parts of geometries, those of collections within collections, too."""
     shapely: Any = sys.modules["shapely"]
     several = [mesh] if _is_geometry(mesh) else list(cast("Iterable[BaseGeometry]", mesh))
-    odd = next((i for i, part in enumerate(several) if not _is_geometry(part)), None)
-    if odd is not None:
-        raise AdapterError(f"geometry {odd} is a {type(several[odd]).__name__}, no shapely geometry", indices=[odd])
-    parts = np.array(several, dtype=object)
-    while True:
-        taken: npt.NDArray[np.object_] = shapely.get_parts(parts)
-        if len(taken) == len(parts) and (shapely.get_type_id(taken) == shapely.get_type_id(parts)).all():
-            return taken
-        parts = taken
+    parts = np.empty(len(several), dtype=object)
+    parts[:] = several
+    odd = np.flatnonzero(~shapely.is_geometry(parts))
+    if odd.size:
+        kind = type(several[odd[0]]).__name__
+        raise AdapterError(f"geometry {odd[0]} is a {kind}, no shapely geometry", indices=odd.tolist())
+    while (shapely.get_type_id(parts) > shapely.GeometryType.POLYGON).any():  # collections, of collections perhaps
+        parts = shapely.get_parts(parts)
+    return parts
 
 
 def _require_cells(polygons: npt.NDArray[np.object_], sides: npt.NDArray[np.int64], shapely: Any) -> None:

@@ -70,6 +70,7 @@ Object.assign(Scene.prototype, {
     const xy = (v) => [points[2 * v], points[2 * v + 1]];
     const lines = new Path2D();
     for (const [a, b] of mark.lines) this.addLine(lines, ...xy(a), ...xy(b));
+    if (mark.places.length === 2) this.addLine(lines, ...mark.places.flat()); // a segment of the domain
     context.strokeStyle = colour;
     context.lineWidth = 3;
     context.stroke(lines);

@@ -1,7 +1,7 @@
 """The page: markup, with the style, the script, the report and the arrays in it."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from html import escape
 from importlib import resources
 
@@ -87,16 +87,31 @@ def _aside(report: Report, mesh: CheckedMesh, heading: str) -> Iterator[str]:
     counts = "" if heading == _counts(mesh) else f'<p class="counts">{_counts(mesh)}</p>\n'
     yield f'<span class="answer {tone}">{answer}</span>\n{counts}</header>\n'
     yield "<section>\n<details open>\n<summary><h2>Claims</h2></summary>\n"
-    claimed = {property_: report.findings[property_] for property_ in report.claims}
-    others = {name: finding for name, finding in report.findings.items() if name not in claimed}
     yield '<table id="claims">\n<tbody>\n'
-    yield from (_claim(property_, finding, "") for property_, finding in claimed.items())
-    yield "</tbody>\n<tbody>\n"
-    yield from (_claim(property_, finding, "unclaimed ") for property_, finding in others.items())
-    yield "</tbody>\n</table>\n</details>\n</section>\n"
+    yield from (
+        _claim(property_, report.findings[property_], "") for property_ in sorted(report.claims, key=_rank(report))
+    )
+    yield "</tbody>\n"
+    others = [property_ for property_ in report.findings if property_ not in report.claims]
+    if others:
+        yield '<tbody>\n<tr><th colspan="2" scope="rowgroup">not claimed</th></tr>\n'
+        yield from (_claim(property_, report.findings[property_], "unclaimed ") for property_ in others)
+        yield "</tbody>\n"
+    yield "</table>\n</details>\n</section>\n"
     yield _file("places.html")
     yield f"<footer>mesh sha256 <code>{mesh_sha256(mesh.points, mesh.triangles, mesh.quads)}</code><br>"
     yield f"verified by exactmesh {escape(__version__)}, exactly</footer>\n</aside>\n"
+
+
+def _rank(report: Report) -> Callable[[Property], int]:
+    """Return what sorts claims: what fails first, and of that what is wrong."""
+    order = {Verdict.FAILS: 0, Verdict.UNDECIDED: 2, Verdict.HOLDS: 3}
+
+    def rank(claim: Property) -> int:
+        finding = report.findings[claim]
+        return order[finding.verdict] + (finding.severity is Severity.ROUNDING)
+
+    return rank
 
 
 def _claim(property_: Property, finding: Finding, unclaimed: str) -> str:
@@ -104,16 +119,13 @@ def _claim(property_: Property, finding: Finding, unclaimed: str) -> str:
     told = finding.verdict.value
     if finding.verdict is Verdict.FAILS:
         told += f" · {'≥ ' if finding.lower_bound else ''}{finding.count:,}"
-    if unclaimed:
-        told += " · not claimed"
-    rounding = all(violation.severity is Severity.ROUNDING for violation in finding.violations)
-    tone = "fails rounding" if finding.verdict is Verdict.FAILS and rounding else finding.verdict.value
+    tone = "fails rounding" if finding.severity is Severity.ROUNDING else finding.verdict.value
     if finding.violations:
         name = f'<button type="button" data-property="{escape(property_.value)}">{name}</button>'
     because = ""
     if finding.because:
         rest = " and ".join(other.value.replace("_", " ") for other in finding.because)
-        because = f'<span class="because">{escape(rest)} would have to hold</span>'
+        because = f'<span class="because">waits for {escape(rest)}</span>'
     return (
         f'<tr class="{unclaimed}{tone}"><td><span class="dot" aria-hidden="true"></span>{name}{because}</td>'
         f"<td>{escape(told)}</td></tr>\n"

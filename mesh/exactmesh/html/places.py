@@ -66,7 +66,7 @@ def _place(violation: Violation, payload: Payload) -> dict[str, object]:
         **violation_document(violation),
         "property": violation.property.value,
         "approximately": None if magnitude is None else approximately(magnitude),
-        "points": [*(point_of[v] for v in violation.vertices), *others],
+        "points": [*(point_of[v] for v in dict.fromkeys((*violation.vertices, *violation.indices))), *others],
         "places": [[payload.scaled(z) for z in place] for place in violation.places],
         "box": _box((*violation.points, *violation.places), payload),
         "lines": _lines(violation.kind, tuple(there)),

@@ -23,7 +23,7 @@ from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.regions import check_labels, check_region_areas
 from exactmesh.verify.report import Finding, Violation
 from exactmesh.verify.triangles import Shapes, turned
-from exactmesh.verify.witness import IndexArray, finding_of, joined, point_name
+from exactmesh.verify.witness import IndexArray, finding_of, joined, places_of, point_name
 
 __all__ = ["check_constraints", "stacked"]
 
@@ -282,7 +282,8 @@ def _domain_points(tiled: Tiled, placed: Placed, survey: Survey | None, cover: F
 
     def describe(v: int) -> Violation:
         message = f"point {point_name(placed.outline.points, v)} of the domain is no corner of any triangle"
-        return Violation(Property.DOMAIN_POINTS, Kind.MISSING_POINT, (), (), message)
+        places = places_of(placed.outline.points, [v])
+        return Violation(Property.DOMAIN_POINTS, Kind.MISSING_POINT, (), (), message, places=places)
 
     culprits, mesh = survey.stray[survey.stray_covered], tiled.mesh
     if placed.within is None or not culprits.size:

@@ -26,7 +26,7 @@ from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.planes import CROSSING, INNER, LOOSE, WHOLE, flatten, glue
 from exactmesh.verify.properties import Kind, Property, Verdict
 from exactmesh.verify.report import Finding, Violation
-from exactmesh.verify.witness import IndexArray, finding_of, joined, point_name
+from exactmesh.verify.witness import IndexArray, finding_of, joined, places_of, point_name
 
 __all__ = ["Placed", "Survey", "check_cover", "check_inner_parts", "check_outer_parts", "surveyed"]
 
@@ -64,6 +64,10 @@ class Placed:
         """Return a segment of the domain by its number and ends."""
         a, b = (point_name(self.outline.points, int(v)) for v in self.outline.segments[segment])
         return f"segment {segment} of the domain, from point {a} to point {b},"
+
+    def ends(self, segment: int) -> tuple[tuple[float, float], ...]:
+        """Return where a segment of the domain begins and ends."""
+        return places_of(self.outline.points, self.outline.segments[segment])
 
     def corners(self, segment: int) -> tuple[int, ...]:
         """Return the corners at the ends of a segment, as far as there are any."""
@@ -182,7 +186,8 @@ def check_outer_parts(marks: Marks, placed: Placed, survey: Survey) -> Finding:
 def _missing(placed: Placed, i: int, fault: str) -> Violation:
     limit = "" if placed.within is None else f" (within {placed.within:g})"
     message = f"{placed.name(i)} {fault}{limit}"
-    return Violation(Property.SEGMENTS_PRESENT, Kind.MISSING_SEGMENT, (), placed.corners(i), message)
+    kind = Kind.MISSING_SEGMENT
+    return Violation(Property.SEGMENTS_PRESENT, kind, (), placed.corners(i), message, places=placed.ends(i))
 
 
 def _meeting(mesh: Mesh, placed: Placed, faces: Faces) -> Finding:
@@ -200,7 +205,7 @@ def _meeting(mesh: Mesh, placed: Placed, faces: Faces) -> Finding:
         i = int(np.flatnonzero(there[placed.outline.segments].any(axis=1))[0])
         fault, kind = f"ends inside {_edge(mesh, faces, e)}", Kind.HANGING_NODE
     message = f"{placed.name(i)} {fault}"
-    violation = Violation(Property.SEGMENTS_PRESENT, kind, (), placed.corners(i), message)
+    violation = Violation(Property.SEGMENTS_PRESENT, kind, (), placed.corners(i), message, places=placed.ends(i))
     return Finding(Verdict.FAILS, 1, (violation,), lower_bound=True)
 
 
@@ -300,19 +305,22 @@ def _even_boundary(mesh: Mesh, links: Links, slot: int) -> Violation:
 
 
 def _covered_hole(placed: Placed, i: int) -> Violation:
-    return _violation(
-        Kind.COVERED_HOLE, (), f"the hole's point {point_name(placed.outline.holes, i)} lies in a triangle"
-    )
+    message = f"the hole's point {point_name(placed.outline.holes, i)} lies in a triangle"
+    places = places_of(placed.outline.holes, [i])
+    return Violation(Property.COVERS_DOMAIN, Kind.COVERED_HOLE, (), (), message, places=places)
 
 
 def _bare_face(mesh: Mesh, placed: Placed, faces: Faces, side: int) -> Violation:
     e = side >> 1
     where = "above" if side & 1 else "below"
     if faces.plane.sort[e] == LOOSE:
-        name = placed.name(int(placed.absent[faces.plane.source[e]]))
+        segment = int(placed.absent[faces.plane.source[e]])
+        name, places = placed.name(segment), placed.ends(segment)
     else:
-        name = _edge(mesh, faces, e)
-    return _violation(Kind.NOT_COVERED, _corners(faces, e), f"no triangle covers the face of the domain {where} {name}")
+        name, places = _edge(mesh, faces, e), ()
+    message = f"no triangle covers the face of the domain {where} {name}"
+    corners = _corners(faces, e)
+    return Violation(Property.COVERS_DOMAIN, Kind.NOT_COVERED, (), corners, message, places=places)
 
 
 def _covered_outside(mesh: Mesh, faces: Faces, side: int) -> Violation:

@@ -37,14 +37,14 @@ Json = dict[str, object]
 
 def document_of(report: "Report") -> Json:
     """Return the whole report."""
-    from exactmesh import __version__
+    import exactmesh  # not before all of it is there
 
     mesh = report.mesh
     counts = {"points": report.point_count, "triangles": report.triangle_count, "quads": report.quad_count}
     sha256 = None if mesh is None else mesh_sha256(mesh.points, mesh.triangles, mesh.quads)
     return {
         "format": FORMAT,
-        "exactmesh": __version__,
+        "exactmesh": exactmesh.__version__,
         "ok": report.ok,
         "severity": None if report.severity is None else report.severity.value,
         "mesh": {"sha256": sha256, **counts},

@@ -230,12 +230,14 @@ def linked(n: int, context: Context, local: Local) -> Links:
     corners, size = len(local.order), local.triangles.size + local.quads.size
     first = np.zeros(corners + 1, dtype=np.int64)
     count_corners(local.triangles, first)
-    count_quad_corners(local.quads, first)
+    if len(local.quads):  # else there is no need to compile it
+        count_quad_corners(local.quads, first)
     most, large = int(first.max()), np.flatnonzero(first >= _LARGE)
     np.cumsum(first, out=first)
     slots, kinds = np.empty(size, dtype=np.int64), np.full(size, BOUNDARY, dtype=np.int8)
     fill_slots(local.triangles, first, slots)
-    fill_quad_slots(local.quads, first, slots)
+    if len(local.quads):
+        fill_quad_slots(local.quads, first, slots)
     for v in large:
         bucket = slots[first[v] : first[v + 1]]
         bucket[:] = bucket[np.argsort(local.order[bucket >> 32], kind="stable")]

@@ -308,7 +308,7 @@ def asked_properties(
         ChoiceError: there are bounds on triangles, but quadrilaterals as well.
     """
     if quads and bounds:
-        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is a bound on triangles, and there are quadrilaterals")
+        raise ChoiceError(f"{_NEEDS[next(iter(bounds))]} is about triangles, and there are quadrilaterals")
     given = {
         "quadrilaterals": quads,
         "segments or a domain": segments or domain,

@@ -19,6 +19,7 @@ __all__ = [
     "exact",
     "finding_of",
     "joined",
+    "places_of",
     "point_name",
     "rows_at_vertices",
     "rows_of_triangles",
@@ -69,6 +70,11 @@ def approximately(value: Fraction) -> str:
 def point_name(points: FloatArray, vertex: int) -> str:
     """Return "7 (0.5, 1.0)"."""
     return f"{vertex} ({float(points[vertex, 0])!r}, {float(points[vertex, 1])!r})"
+
+
+def places_of(points: FloatArray, rows: Iterable[int]) -> tuple[tuple[float, float], ...]:
+    """Return some positions, for witnesses that are about no vertex."""
+    return tuple((float(points[row, 0]), float(points[row, 1])) for row in rows)
 
 
 def triangle_name(points: FloatArray, corners: Iterable[int]) -> str:
