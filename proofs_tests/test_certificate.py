@@ -3,7 +3,7 @@
 import hashlib
 import json
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import jsonschema
@@ -11,11 +11,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from exactkernel import ShapeError
 from exactmesh import PSLG, constrained_delaunay, delaunay, voronoi
 from exactmesh.cli import main
 from exactmesh.errors import CertificateError
 from exactmesh.io import Mesh, write
-from exactmesh.verify import FORMAT, Report, check_certificate, read_certificate, report_schema, verify
+from exactmesh.verify import FORMAT, Certificate, Report, check_certificate, read_certificate, report_schema, verify
 from exactmesh.verify.hashing import array_sha256, mesh_sha256
 
 SQUARE = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (0.0, 1.0)]
@@ -254,6 +255,21 @@ class TestCertificate:
         text = verify(dual.points, dual.triangulation.triangles, dual=dual).to_json()
         with pytest.raises(CertificateError, match="does not hold the diagram"):
             check_certificate(text, dual.points, dual.triangulation.triangles, again=True)
+
+    @pytest.mark.parametrize("read", [str, str.encode, json.loads, read_certificate])
+    def test_in_whatever_form(self, read: Callable[[str], str | bytes | dict[str, object] | Certificate]) -> None:
+        certificate = read(verify(KITE, HALVES).to_json())
+        assert check_certificate(certificate, KITE, HALVES, again=True)
+        assert not check_certificate(certificate, KITE, HALVES[::-1])
+
+    @pytest.mark.parametrize("certificate", [None, 5, b"", b"\xff\xfe", {}, {"format": 5}, []])
+    def test_none_in_another_form(self, certificate: object) -> None:
+        with pytest.raises(CertificateError):
+            check_certificate(certificate, KITE, HALVES)  # type: ignore[arg-type]  # as callers do
+
+    def test_bounds_are_a_mapping(self) -> None:
+        with pytest.raises(ShapeError, match="expected a mapping"):
+            check_certificate(verify(KITE, HALVES).to_json(), KITE, HALVES, bounds=3)  # type: ignore[arg-type]  # as above
 
     def test_nested_too_deep(self) -> None:
         with pytest.raises(CertificateError):

@@ -75,3 +75,11 @@ class TestAssertions:
                 told.append(str(error))
         assert told
         assert all(f"by {Severity.ROUNDING} only" in sentence for sentence in told)
+
+    def test_what_is_missing_is_shown_with_all_points_that_are_named(self) -> None:
+        with pytest.raises(AssertionError, match="no triangle covers the points 0") as caught:
+            assert_delaunay([(0, 0), (1000, 0), (500, 0.001)], np.empty((0, 3), dtype=np.int64))
+        assert all(f"# point {v}" in str(caught.value) for v in range(3))
+        with pytest.raises(AssertionError, match="lies outside of all triangles") as caught:
+            assert_delaunay([(0, 0), (1000, 0), (500, 1), (600, 5)], [(0, 1, 2)])
+        assert "points =" not in str(caught.value)  # one point alone shows nothing

@@ -2,6 +2,7 @@
 can read."""
 
 import json
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 from random import Random
@@ -341,3 +342,56 @@ class TestReportAtAGlance:
     def test_unclaimed_failures_have_no_witnesses_in_print(self) -> None:
         assert "90 degrees" not in str(verify(*self.GOOD))
         assert "90 degrees" in str(verify(*self.GOOD, claims=["acute"]))
+
+    def test_claims_stand_first_and_the_rest_apart(self) -> None:
+        """Above "not claimed:" there are the claims, what fails first; below it the others, a line each."""
+        report = verify(KITE, HALVES, claims=["admissible", "delaunay"])
+        head, claims, others = re.split(r".*every|NOT.*\n|  not claimed:\n", str(report))
+        assert head == "4 points, 2 triangles: "
+        assert re.findall(r"^  (\S \w+)", claims, re.MULTILINE) == ["! delaunay", "+ admissible"]
+        told = re.findall(r"^  \S (\w+)", others, re.MULTILINE)
+        assert told == [property_ for property_ in report.findings if property_ not in report.claims]
+        assert len(others.splitlines()) == len(told) + len(report.stages)
+        assert "not claimed" not in str(verify(*self.GOOD, claims=list(report.findings)))  # control
+
+
+class TestListing:
+    """Where cells may be listed either way, it is said how many are clockwise; where cells overlap, which of them are
+    listed the other way round than most. Of an inverted cell of finite elements that is all that there is to see."""
+
+    FAN = [(0, 0), (4, 0), (4, 4), (0, 4), (-4, 4)]
+    POINTS = [*FAN, (1, -1)]
+
+    def test_an_inverted_triangle(self) -> None:
+        """The vertex at (1, -1) was pushed across the edge from 0 to 1."""
+        rows = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 1, 5)]
+        assert verify(self.POINTS, rows, orientation="any", claims=["admissible"]).ok  # it is its other side
+        report = verify([*self.FAN, (1, 0.5)], rows, orientation="any", claims=["admissible"])
+        (first, *_) = report.findings[Property.ADMISSIBLE].violations
+        assert first.triangles == (0, 3)
+        assert "; triangle" not in first.message  # both are counterclockwise
+        report = verify([*self.FAN, (1, 0.5)], [*rows[:3], (0, 5, 1)], orientation="any", claims=["admissible"])
+        (first, *_) = report.findings[Property.ADMISSIBLE].violations
+        assert first.message.endswith("they overlap; triangle 3 is listed clockwise, most are counterclockwise")
+        (first, *_) = report.findings[Property.EDGE_MANIFOLD].violations
+        assert first.message.endswith("; triangle 3 is listed clockwise, most are counterclockwise")
+        assert "orientation      holds; 1 of 4 triangles are listed clockwise" in str(report)
+
+    def test_the_few_are_named_whichever_they_are(self) -> None:
+        rows = [(0, 2, 1), (0, 3, 2), (0, 4, 3), (0, 1, 5)]
+        (first, *_) = verify([*self.FAN, (1, 0.5)], rows, orientation="any").findings[Property.ADMISSIBLE].violations
+        assert first.message.endswith("; triangle 3 is listed counterclockwise, most are clockwise")
+
+    def test_quadrilaterals(self) -> None:
+        points = [(0, 0), (4, 0), (4, 4), (0, 4), (4, 2), (0, 2), (8, 0), (8, 4)]
+        report = verify(points, quads=[(0, 1, 2, 3), (1, 6, 7, 2), (0, 5, 4, 1)], orientation="any")
+        (first, *_) = report.findings[Property.ADMISSIBLE].violations
+        assert first.message.endswith("; cell 2 is listed clockwise, most are counterclockwise")
+        assert report.findings[Property.ORIENTATION].note == "1 of 3 cells are listed clockwise"
+
+    def test_control_nothing_is_said_where_all_are_alike_or_half(self) -> None:
+        for rows in ([(0, 1, 2), (0, 1, 5)], [(0, 1, 2), (0, 5, 1)]):
+            report = verify([*self.FAN, (1, 0.5)], rows, orientation="any")
+            assert "most are" not in str(report)
+        assert report.findings[Property.ORIENTATION].note == "1 of 2 triangles are listed clockwise"
+        assert verify(SQUARE, HALVES, orientation="any").findings[Property.ORIENTATION].note == ""

@@ -13,7 +13,7 @@ from proofs_tests.shape_oracle import cosine_interval
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh import delaunay
-from exactmesh.verify import WITNESSES, Finding, Property, Report, Severity, Verdict, grading, severity, verify
+from exactmesh.verify import WITNESSES, Finding, Property, Severity, Verdict, grading, severity, text, verify
 from exactmesh.verify.witness import Ranking
 
 U = Fraction(1, 2**53)
@@ -314,5 +314,5 @@ class TestReport:
             monkeypatch.setattr(Finding, "severity", property(lambda self: Severity.WRONG if self.count else None))
             assert verify(points, triangles).severity is Severity.WRONG
         else:
-            monkeypatch.setattr(Report, "_worst_first", lambda self: [*self.findings])
+            monkeypatch.setattr(text, "worst_first", lambda report: [*report.findings])
             assert not str(verify([*points, (9.0, 9.0)], triangles)).splitlines()[1].startswith("  ! ")

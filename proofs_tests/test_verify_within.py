@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
@@ -15,7 +16,18 @@ from proofs_tests.oracles import Triangle
 from exactkernel import BoundError
 from exactkernel.types import FloatArray
 from exactmesh import PSLG, delaunay, refine
-from exactmesh.verify import ChoiceError, Kind, Property, Report, Verdict, constrained, displaced, placement, verify
+from exactmesh.verify import (
+    ChoiceError,
+    Kind,
+    Property,
+    Report,
+    Verdict,
+    VerificationError,
+    displaced,
+    placement,
+    trial,
+    verify,
+)
 from exactmesh.verify.links import linked
 from exactmesh.verify.local import localized
 from exactmesh.verify.mesh import index_quads, index_triples, prepared_mesh
@@ -482,7 +494,7 @@ class TestAblation:
         monkeypatch.setattr(placement, "is_within", lambda *_: True)
         assert report().verdict(Property.SEGMENTS_PRESENT) is Verdict.HOLDS
         assert report().verdict(Property.DOMAIN_POINTS) is Verdict.FAILS
-        monkeypatch.setattr(constrained, "is_within", lambda *_: True)
+        monkeypatch.setattr(trial, "is_within", lambda *_: True)
         assert report().ok
 
     def test_control_moved_corners(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -493,3 +505,41 @@ class TestAblation:
         assert verify(points, mesh.triangles, domain=domain, within=1e-5, claims=COVER).ok
         monkeypatch.setattr(placement, "_moved", lambda *_: None)
         assert not verify(points, mesh.triangles, domain=domain, within=1e-5, claims=COVER).ok
+
+
+class TestAdvice:
+    """Where a mesh misses its domain by rounding, the report says which distance would do; it does, and that is the
+    smallest one but for three digits. Where there is none so near, nothing is said."""
+
+    @pytest.mark.parametrize("digits", ["d", "f"])
+    @pytest.mark.parametrize("within", [None, 0.0, 1e-18])
+    def test_it_would_do(self, digits: str, within: float | None) -> None:
+        domain = slanted(1)
+        mesh = refine(domain, min_angle=20).triangulation
+        points = mesh.points.astype(digits).astype(np.float64)
+        report = verify(points, mesh.triangles, domain=domain, within=within, claims=COVER)
+        notes = {report.findings[claim].note for claim in COVER} - {""}
+        (advice,) = (re.fullmatch(r"within=(\S+) it would hold", note) for note in notes)
+        assert advice is not None
+        assert f"; {advice[0]}\n" in str(report)
+        with pytest.raises(VerificationError, match=re.escape(f"({advice[0]})")):
+            report.raise_if_failed()
+        told = verify(points, mesh.triangles, domain=domain, within=float(advice[1]), claims=COVER)
+        assert told.ok
+        assert told.distance is not None
+        assert 0.99 * float(advice[1]) < told.distance <= float(advice[1])
+        assert f"holds within {advice[1]}\n" in str(told)
+
+    @pytest.mark.parametrize("within", [None, 1e-9, math.inf])
+    def test_control_what_is_missing_is_not_excused(self, within: float | None) -> None:
+        domain = slanted(1)
+        mesh = refine(domain, min_angle=20).triangulation
+        at_segment = int(np.flatnonzero((mesh.neighbours < 0).any(axis=1))[0])
+        triangles = np.delete(mesh.triangles, at_segment, axis=0)
+        report = verify(mesh.points, triangles, domain=domain, within=within, claims=COVER)
+        assert not report.ok
+        assert not any(finding.note for finding in report.findings.values())
+
+    def test_not_beyond_the_largest_double(self) -> None:
+        with pytest.raises(BoundError, match="largest double"):
+            verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)], domain=slanted(1), within=10**400)

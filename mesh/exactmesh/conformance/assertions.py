@@ -2,6 +2,7 @@
 
 from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
 
+from collections.abc import Iterable
 from typing import cast
 
 import numpy.typing as npt
@@ -16,11 +17,13 @@ from exactmesh.verify import (
     Property,
     Report,
     Verdict,
+    Violation,
     verify,
 )
 
 __all__ = ["assert_admissible", "assert_constrained_delaunay", "assert_delaunay"]
 
+_CORNERS = 3
 _SENTENCES = 3  # of each claim that are told
 _ADMISSIBLE = (Property.FINITE, Property.INDICES, Property.ADMISSIBLE)
 
@@ -151,11 +154,18 @@ def _told(report: Report) -> str:
         lines += [f"  {claim} fails{size}: {violation.message}" for violation in finding.violations[:_SENTENCES]]
         if finding.count > _SENTENCES:
             lines.append(f"  ... and {finding.count - _SENTENCES} more")
+        if finding.note:
+            lines.append(f"  ({finding.note})")
     undecided = [str(claim) for claim in report.claims if report.verdict(claim) is Verdict.UNDECIDED]
     if undecided:
         lines.append(f"  undecided because of that: {', '.join(undecided)}")
-    witnesses = [violation for claim in failing for violation in report.findings[claim].violations]
-    if witnesses:
-        smallest = min(witnesses, key=lambda violation: (not violation.is_local, len(violation.indices)))
-        lines += ["", smallest.submesh().to_python().rstrip()]
-    return "\n".join(lines)
+    part = _part(violation for claim in failing for violation in report.findings[claim].violations)
+    return "\n".join(lines if part is None else [*lines, "", part.submesh().to_python().rstrip()])
+
+
+def _part(witnesses: Iterable[Violation]) -> Violation | None:
+    """Return the smallest violation that is one by itself. Of what is none without the rest, that something is missing,
+    the one with the most points: they show where, unless they are too few for a triangle."""
+    told = sorted(witnesses, key=lambda violation: len(violation.indices))
+    local = [violation for violation in told if violation.is_local]
+    return local[0] if local else told[-1] if told and len(told[-1].indices) >= _CORNERS else None

@@ -126,6 +126,8 @@ def _claim(property_: Property, finding: Finding, unclaimed: str) -> str:
     if finding.because:
         rest = " and ".join(other.value.replace("_", " ") for other in finding.because)
         because = f'<span class="because">waits for {escape(rest)}</span>'
+    if finding.note:
+        because += f'<span class="because">{escape(finding.note)}</span>'
     return (
         f'<tr class="{unclaimed}{tone}"><td><span class="dot" aria-hidden="true"></span>{name}{because}</td>'
         f"<td>{escape(told)}</td></tr>\n"

@@ -3,18 +3,19 @@
 >>> from exactmesh.verify import verify
 >>> print(verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)], claims=["admissible"]))
 3 points, 1 triangles: every claim holds
-  + finite           holds (not claimed)
-  + indices          holds (not claimed)
-  + distinct_points  holds (not claimed)
-  + orientation      holds (not claimed)
-  + all_points_used  holds (not claimed)
-  + edge_manifold    holds (not claimed)
-  + vertex_manifold  holds (not claimed)
   + admissible       holds
-  + covers_hull      holds (not claimed)
-  + delaunay         holds (not claimed)
-  + weakly_acute     holds (not claimed)
-  - acute            fails, 1 found (not claimed)
+  not claimed:
+  + finite           holds
+  + indices          holds
+  + distinct_points  holds
+  + orientation      holds
+  + all_points_used  holds
+  + edge_manifold    holds
+  + vertex_manifold  holds
+  + covers_hull      holds
+  + delaunay         holds
+  + weakly_acute     holds
+  - acute            fails, 1 found
   orient2d: filter 6, grid 1
   incircle: not called
 """

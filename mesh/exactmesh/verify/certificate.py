@@ -95,14 +95,14 @@ class CertificateCheck:
         return not self.differences
 
 
-def read_certificate(text: str) -> Certificate:
-    """Return the certificate in a text.
+def read_certificate(text: str | bytes | Mapping[str, object]) -> Certificate:
+    """Return the certificate in a text, or in what ``json`` made of it.
 
     Raises:
         CertificateError: it is no JSON, of another format, not whole, or contradicts itself.
     """
     try:
-        document = json.loads(text)
+        document = dict(text) if isinstance(text, Mapping) else json.loads(text)
     except (TypeError, ValueError, RecursionError) as error:
         raise CertificateError(f"no certificate: {error}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -148,7 +148,7 @@ _PARTS: dict[str, type | tuple[type, ...]] = {
 
 
 def check_certificate(
-    certificate: str | Certificate,
+    certificate: str | bytes | Mapping[str, object] | Certificate,
     points: object,
     triangles: npt.ArrayLike | None = None,
     *,
@@ -165,7 +165,7 @@ def check_certificate(
     and bounds were asked for, and how triangles may be listed, is the certificate's own to say.
 
     Args:
-        certificate: what :meth:`Report.to_json` wrote.
+        certificate: what :meth:`Report.to_json` wrote: the text, or what ``json`` makes of it.
         points, triangles, quads, segments, domain, labels: as for :func:`verify`.
         bounds: bounds that were arrays, by the names of their arguments; single numbers are in the certificate.
         again: verify the mesh anew, with the claims of the certificate, and compare the verdicts.
@@ -184,7 +184,7 @@ def check_certificate(
     >>> check_certificate(text, points, [(1, 2, 0)]).differences
     ('the mesh is another one: its sha256 is 7e8e4cb1..., that of the certificate is 6103f473...',)
     """
-    read = read_certificate(certificate) if isinstance(certificate, str) else certificate
+    read = certificate if isinstance(certificate, Certificate) else read_certificate(certificate)
     mesh = _given_mesh(Given(points, triangles, quads), Extras(segments, domain, labels, None), _bounds(read, bounds))
     _require_the_same_things(read, mesh)
     differences = list(_differences(read, mesh))
@@ -204,6 +204,8 @@ def _bounds(certificate: Certificate, arrays: Mapping[str, npt.ArrayLike] | None
             bounds[name] = float(cast("float | str", bound))
         except (TypeError, ValueError, OverflowError):
             raise CertificateError(f"the certificate has no proper bound {name!r}") from None
+    if arrays is not None and not isinstance(arrays, Mapping):
+        raise ShapeError(f"bounds: expected a mapping of names to arrays, not a {type(arrays).__name__}")
     for name, array in dict(arrays or {}).items():
         try:
             bounds[name] = np.asarray(array, dtype=np.float64)

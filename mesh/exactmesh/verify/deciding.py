@@ -28,6 +28,7 @@ from exactmesh.verify.duality import check_dual
 from exactmesh.verify.gabriel import check_gabriel, is_locally_delaunay
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position, unused_points
 from exactmesh.verify.links import Links, linked
+from exactmesh.verify.listing import with_listing
 from exactmesh.verify.local import Local, localized
 from exactmesh.verify.manifold import check_edges, check_fans, fans_finding
 from exactmesh.verify.mesh import (
@@ -87,6 +88,7 @@ def check_mesh(
         Property.WEAKLY_ACUTE: check_angles(mesh, shapes, Property.WEAKLY_ACUTE),
         Property.ACUTE: check_angles(mesh, shapes, Property.ACUTE),
     }
+    findings = with_listing(mesh, shapes, orientation, findings)
     findings.update(_against_points(mesh, shapes, tiling, unused))
     findings.update(_against_bounds(mesh, shapes, upright, bounds))
     if dual is not None:

@@ -101,6 +101,7 @@ def finding_document(finding: "Finding") -> Json:
         "rounding": finding.rounding,
         "because": [property_.value for property_ in finding.because],
         **distance,
+        **({"note": finding.note} if finding.note else {}),
         "violations": [violation_document(violation) for violation in finding.violations],
     }
 

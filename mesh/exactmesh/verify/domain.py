@@ -2,6 +2,7 @@
 
 from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -112,7 +113,10 @@ def _within(within: float | None) -> float | None:
         return None
     if not isinstance(given, (int, float, np.integer, np.floating)) or isinstance(given, bool) or not given >= 0:
         raise BoundError(f"within is a distance, 0 or more, not {shown(given)}")
-    return float(given)
+    try:
+        return float(given)
+    except OverflowError:
+        raise BoundError("within is beyond the largest double; infinity allows every distance") from None
 
 
 def _labels(labels: npt.ArrayLike, m: int) -> FloatArray:
@@ -135,8 +139,11 @@ def _require_domain(domain: object) -> None:
         remedy = "give its .domain"
     elif hasattr(domain, "geom_type"):
         remedy = "make one with PSLG.from_shapely"
-    elif isinstance(domain, dict):
-        remedy = "make one with PSLG.from_geojson, or PSLG(**domain)"
+    elif isinstance(domain, Mapping) and "vertices" in domain:
+        optional = "".join(f", {name}=domain['{name}']" for name in ("holes", "regions") if name in domain)
+        remedy = f"make one with PSLG(domain['vertices'], domain['segments']{optional})"
+    elif isinstance(domain, Mapping) and "type" in domain:
+        remedy = "make one with PSLG.from_geojson"
     raise ShapeError(f"domain: expected a PSLG, not a {type(domain).__name__}: {remedy}")
 
 

@@ -13,17 +13,12 @@ from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.document import FORMAT, document_of, finding_document, violation_document
 from exactmesh.verify.properties import LOCAL_PROPERTIES, Kind, Property, Severity, Verdict
 from exactmesh.verify.submesh import Submesh, cut_out
+from exactmesh.verify.text import lines_of, size_of, worst_first
 
 __all__ = ["FORMAT", "WITNESSES", "Finding", "Report", "VerificationError", "Violation"]
 
 #: Violations that a finding spells out; ``Finding.count`` goes on counting.
 WITNESSES = 100
-
-_MARKS = {Verdict.HOLDS: "+", Verdict.FAILS: "!", Verdict.UNDECIDED: "?"}
-_ROUNDING_FAILS = "~"
-_UNCLAIMED_FAILS = "-"  # a fact, not a fault
-_WIDTH = 16  # of the column of names
-_SHOWN = 3  # violations of a property that str(report) prints
 
 
 def root_above(value: Fraction) -> float:
@@ -118,6 +113,7 @@ class Finding:
         because: for UNDECIDED, the properties that would have to hold first.
         rounding: how many of ``count`` are rounding-sized.
         distance_squared: where a distance was allowed (``within``), the exact square of the one that was found.
+        note: what is worth to know besides, such as how many cells are listed clockwise where that is allowed.
     """
 
     verdict: Verdict
@@ -127,6 +123,7 @@ class Finding:
     because: tuple[Property, ...] = ()
     rounding: int = 0
     distance_squared: Fraction | None = None
+    note: str = ""
 
     @property
     def distance(self) -> float | None:
@@ -187,12 +184,7 @@ class Report:
 
     def __repr__(self) -> str:
         verdicts = ", ".join(f"{claim} {self.verdict(claim)}" for claim in self.claims if not self._holds(claim))
-        return f"Report({self._size}, {verdicts or 'ok'})"
-
-    @property
-    def _size(self) -> str:
-        quads = f", {self.quad_count} quadrilaterals" if self.quad_count else ""
-        return f"{self.point_count} points, {self.triangle_count} triangles{quads}"
+        return f"Report({size_of(self)}, {verdicts or 'ok'})"
 
     def _holds(self, claim: Property) -> bool:
         return self.findings[claim].verdict is Verdict.HOLDS
@@ -251,8 +243,11 @@ class Report:
             VerificationError: it carries this report.
         """
         if not self.ok:
-            broken = [claim for claim in self._worst_first() if claim in self.claims and not self._holds(claim)]
-            summary = ", ".join(f"{claim} {self.verdict(claim)}" for claim in broken)
+            broken = [claim for claim in worst_first(self) if not self._holds(claim)]
+            notes = {claim: self.findings[claim].note for claim in broken}
+            summary = ", ".join(
+                f"{claim} {self.verdict(claim)}{f' ({note})' if note else ''}" for claim, note in notes.items()
+            )
             witnesses = [self.findings[claim].violations for claim in broken]
             sentence = next((violations[0].message for violations in witnesses if violations), "no witness")
             raise VerificationError(f"{summary}: {sentence}", report=self)
@@ -276,56 +271,4 @@ class Report:
         return page_of(self, title)
 
     def __str__(self) -> str:
-        return "\n".join(self._lines())
-
-    def _worst_first(self) -> list[Property]:
-        """Return the properties in the order in which they are shown: claims that fail by something wrong, claims that
-        fail by something rounding-sized, undecided claims, and the rest."""
-
-        def rank(property_: Property) -> int:
-            finding = self.findings[property_]
-            if property_ not in self.claims or finding.verdict is Verdict.HOLDS:
-                return 3
-            if finding.verdict is Verdict.UNDECIDED:
-                return 2
-            return int(finding.severity is Severity.ROUNDING)
-
-        return sorted(self.findings, key=rank)
-
-    def _lines(self) -> Iterator[str]:
-        outcome = "every claim holds" if self.ok else "NOT what it claims to be"
-        if self.severity is Severity.ROUNDING:
-            outcome += ", by rounding-sized violations only"
-        yield f"{self._size}: {outcome}"
-        width = max(_WIDTH, *map(len, self.findings))
-        for property_ in self._worst_first():
-            finding, claimed = self.findings[property_], property_ in self.claims
-            fails = finding.verdict is Verdict.FAILS
-            mark = _MARKS[finding.verdict]
-            if fails and finding.severity is Severity.ROUNDING:
-                mark = _ROUNDING_FAILS
-            if fails and not claimed:
-                mark = _UNCLAIMED_FAILS
-            yield f"  {mark} {property_:<{width}} {self._summary(property_, finding)}"
-            if fails and not claimed:
-                continue
-            for violation in finding.violations[:_SHOWN]:
-                yield f"      {violation.message}"
-            if finding.count > _SHOWN:
-                yield f"      ... and {finding.count - _SHOWN} more"
-        for predicate, counts in self.stages.items():
-            told = ", ".join(f"{stage.name.lower()} {count}" for stage, count in counts.items() if count)
-            yield f"  {predicate}: {told or 'not called'}"
-
-    def _summary(self, property_: Property, finding: Finding) -> str:
-        text = finding.verdict.value
-        if finding.verdict is Verdict.FAILS:
-            text += f", {'at least ' if finding.lower_bound else ''}{finding.count} found"
-            if finding.rounding:
-                share = "all" if finding.rounding == finding.count else f"{finding.rounding} of them"
-                text += f", {share} rounding-sized"
-        if finding.distance is not None and finding.verdict is Verdict.HOLDS:
-            text += f" within {finding.distance:.3g}"
-        if finding.because:
-            text += f": {' and '.join(finding.because)} would have to hold"
-        return text if property_ in self.claims else f"{text} (not claimed)"
+        return "\n".join(lines_of(self))
