@@ -214,6 +214,13 @@ class TestBrowser:
         assert number(chromium, "document.querySelectorAll('#list .place').length") == 0
         assert chromium.run("return document.getElementById('nothing').hidden") is False
 
+    def test_what_was_not_claimed_is_no_fault(self, chromium: Page, tmp_path: Path) -> None:
+        chromium.open(verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]).to_html(), tmp_path)  # it is not acute
+        assert number(chromium, "document.querySelectorAll('#list .place').length") == 0
+        assert "not can be switched on" in str(chromium.run("return document.getElementById('nothing').textContent"))
+        chromium.run("document.querySelector('.chip').click()")
+        assert number(chromium, "document.querySelectorAll('#list .place.not_claimed').length") == 1
+
     def test_light_and_dark(self, chromium: Page, tmp_path: Path) -> None:
         chromium.open(broken().to_html(), tmp_path)
         light = pixels(chromium).mean()

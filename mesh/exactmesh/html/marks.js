@@ -2,7 +2,7 @@
 
 Object.assign(Scene.prototype, {
   colourOf(mark) {
-    return theme()[mark.severity === "rounding" ? "rounding" : "wrong"];
+    return theme()[mark.tone === "not_claimed" ? "faint" : mark.tone];
   },
 
   // Where the pin of a violation is on the screen, or null.

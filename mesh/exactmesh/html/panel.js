@@ -21,7 +21,6 @@ class Panel {
     this.viewer = viewer;
     this.shown = SHOWN;
     this.filter = new Set(page.properties.filter((p) => p.claimed && p.listed).map((p) => p.name));
-    if (!this.filter.size) this.filter = new Set(page.properties.filter((p) => p.listed).map((p) => p.name));
     this.fillFilters();
     this.fillList();
   }
@@ -76,6 +75,7 @@ class Panel {
     }
     byId("list").replaceChildren(...items);
     byId("nothing").hidden = marks.length > 0;
+    byId("nothing").textContent = page.violations.length ? "None that was claimed; what was not can be switched on above." : "None.";
   }
 
   item(mark) {
@@ -85,14 +85,14 @@ class Panel {
       element(
         "button",
         {
-          class: `place ${mark.severity}`,
+          class: `place ${mark.tone}`,
           type: "button",
           id: `place-${mark.index}`,
           "aria-current": String(mark === this.viewer.scene?.chosen),
           onclick: () => this.viewer.choose(mark.index),
         },
         element("span", { class: "kind" }, words(mark.kind)),
-        element("span", { class: "tag" }, mark.severity),
+        element("span", { class: "tag" }, words(mark.tone)),
         element("span", { class: "of" }, words(mark.property)),
         element("span", { class: "message" }, mark.message),
       ),
@@ -110,7 +110,7 @@ class Panel {
     button?.scrollIntoView({ block: "nearest" });
     byId("what").replaceChildren(
       element("span", { class: "kind" }, words(mark.kind)),
-      element("span", { class: `tag ${mark.severity}` }, mark.severity),
+      element("span", { class: `tag ${mark.tone}` }, words(mark.tone)),
       element("span", { class: "of" }, words(mark.property)),
     );
     byId("sentence").textContent = mark.message;

@@ -54,7 +54,15 @@ def places_of(report: Report, payload: Payload) -> list[dict[str, object]]:
             _gravity(violation.property),
         ),
     )
-    return [{"index": i, **_place(violation, payload)} for i, violation in enumerate(ordered)]
+    return [
+        {"index": i, "tone": _tone(report, violation), **_place(violation, payload)}
+        for i, violation in enumerate(ordered)
+    ]
+
+
+def _tone(report: Report, violation: Violation) -> str:
+    """Return what the eye shall see: what nobody claimed is a fact, not a fault."""
+    return violation.severity.value if violation.property in report.claims else "not_claimed"
 
 
 def _place(violation: Violation, payload: Payload) -> dict[str, object]:
