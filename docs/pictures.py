@@ -104,7 +104,7 @@ def points_of(shown: PSLG | FloatArray) -> FloatArray:
     return (points - points.min(axis=0)) / np.maximum(np.ptp(points, axis=0), 5e-324)
 
 
-def drawn(strategy: SearchStrategy[PSLG | FloatArray]) -> PSLG | FloatArray:
+def drawn(strategy: SearchStrategy[PSLG | FloatArray], *, is_grid: bool) -> PSLG | FloatArray:
     """Return one of the examples of a strategy, always the same: what is scattered, or else the least like a line."""
     found: list[PSLG | FloatArray] = []
 
@@ -114,8 +114,10 @@ def drawn(strategy: SearchStrategy[PSLG | FloatArray]) -> PSLG | FloatArray:
         found.append(value)
 
     collect()
-    scattered = [shown for shown in found if not isinstance(shown, PSLG) and len(np.unique(shown)) > 20]
-    return scattered[-1] if scattered else max(found, key=lambda shown: np.linalg.det(np.cov(points_of(shown).T)))
+    scattered = [shown for shown in found if not isinstance(shown, PSLG) and len(np.unique(shown)) > 32]
+    if scattered and not is_grid:
+        return scattered[-2]
+    return max(scattered or found, key=lambda shown: np.linalg.det(np.cov(points_of(shown).T)))
 
 
 def draw_strategies(name: str, *, width: int) -> None:
@@ -129,7 +131,7 @@ def draw_strategies(name: str, *, width: int) -> None:
         axes.set_title(family, fontsize=9)
         axes.set_xticks([])
         axes.set_yticks([])
-        shown = drawn(getattr(strategies, family)(min_size=30, max_size=30))
+        shown = drawn(getattr(strategies, family)(min_size=30, max_size=30), is_grid=family == "tilted_grid_points")
         placed = points_of(shown)
         if isinstance(shown, PSLG):
             axes.add_collection(LineCollection(placed[shown.segments], colors="#1b2a41", linewidths=0.8))

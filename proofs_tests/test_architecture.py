@@ -23,7 +23,7 @@ ADAPTERS_MAY = (*VERIFIER_MAY, "exactmesh.adapters", "exactmesh.io")
 ADAPTED = ("exactmesh.adapters", "exactmesh.conformance")
 #: What a module may import within a function only: a report's page is made in a room of its own when it is asked for,
 #: and a mesh that is not given as arrays is taken apart there.
-LATER = {"exactmesh.verify.report": "exactmesh.html", "exactmesh.verify.verifier": "exactmesh.adapters"}
+LATER = {"exactmesh.verify.report": "exactmesh.html", "exactmesh.verify.given": "exactmesh.adapters"}
 #: Where everything comes together.
 EXEMPT = ("exactmesh", *(f"exactmesh.{room}" for room in OUTER_ROOMS))
 

@@ -13,7 +13,7 @@ from proofs_tests.test_verify_constrained import Plain
 from exactmesh.errors import OptionError
 from exactmesh.strategies import Corrupted, Corruption, PlainMesh, corrupt
 from exactmesh.strategies.naive import Place, flipped, inner_quads, is_convex, legalized, opposites, swept
-from exactmesh.verify import Finding, Kind, Property, Report, Verdict, Violation, constrained, verifier, verify
+from exactmesh.verify import Finding, Kind, Property, Report, Verdict, Violation, constrained, deciding, verify
 
 CHUNKS, EACH = 40, 250
 """10,000 meshes in all."""
@@ -346,22 +346,22 @@ def holds(*_: object) -> Finding:
 
 #: Every decision of the verifier that stands alone, and what takes its place.
 KNOCKED_OUT: list[tuple[object, str, object]] = [
-    (verifier, "check_orientation", holds),
-    (verifier, "check_used", holds),
-    (verifier, "check_edges", holds),
-    (verifier, "check_fans", holds),
-    (verifier, "check_zero_area", holds),
-    (verifier, "check_overlap", holds),
-    (verifier, "check_sweep", holds),
-    (verifier, "check_hull", holds),
-    (verifier, "check_distinct", holds),
-    (verifier, "check_delaunay", holds),
-    (verifier, "check_angles", holds),
-    (verifier, "check_angle_bound", holds),
-    (verifier, "check_areas", holds),
-    (verifier, "check_gabriel", holds),
-    (verifier, "check_centres", holds),
-    (verifier, "enclosed_points", lambda *_: np.empty(0, dtype=np.intp)),
+    (deciding, "check_orientation", holds),
+    (deciding, "check_used", holds),
+    (deciding, "check_edges", holds),
+    (deciding, "check_fans", holds),
+    (deciding, "check_zero_area", holds),
+    (deciding, "check_overlap", holds),
+    (deciding, "check_sweep", holds),
+    (deciding, "check_hull", holds),
+    (deciding, "check_distinct", holds),
+    (deciding, "check_delaunay", holds),
+    (deciding, "check_angles", holds),
+    (deciding, "check_angle_bound", holds),
+    (deciding, "check_areas", holds),
+    (deciding, "check_gabriel", holds),
+    (deciding, "check_centres", holds),
+    (deciding, "enclosed_points", lambda *_: np.empty(0, dtype=np.intp)),
     (constrained, "check_constrained", lambda *_: HOLDING),
     (constrained, "check_circles", holds),
     (constrained, "check_cover", holds),
@@ -381,6 +381,9 @@ class TestKnockedOut:
     ) -> None:
         monkeypatch.setattr(module, name, instead)
         for seed in range(4):
-            if next(contradictions(seed), None) is not None:
+            try:
+                if next(contradictions(seed), None) is not None:
+                    return
+            except ValueError:  # what rests on the check cannot do without it
                 return
         raise AssertionError(f"nobody misses {name}")

@@ -16,7 +16,7 @@ import exactmesh.triangle as drop_in
 from exactkernel import ShapeError
 from exactkernel.types import FloatArray
 from exactmesh import delaunay, voronoi
-from exactmesh.verify import ChoiceError, Finding, Kind, Property, Report, Severity, Verdict, duality, verifier, verify
+from exactmesh.verify import ChoiceError, Finding, Kind, Property, Report, Severity, Verdict, deciding, duality, verify
 from exactmesh.verify.dual import Dual
 
 U = Fraction(1, 2**53)
@@ -360,5 +360,5 @@ class TestAblation:
             [(-1.0, -3.0), (1.0, -3.0), (1.0, 3.0), (-1.0, 3.0)],
         )
         assert verify(points, triangles, dual=dual).verdict(Property.VORONOI_DUAL) is Verdict.UNDECIDED
-        monkeypatch.setattr(verifier, "check_delaunay", lambda *_: Finding(Verdict.HOLDS))
+        monkeypatch.setattr(deciding, "check_delaunay", lambda *_: Finding(Verdict.HOLDS))
         assert verify(points, triangles, dual=dual).verdict(Property.VORONOI_DUAL) is Verdict.HOLDS

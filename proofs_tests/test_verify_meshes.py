@@ -13,7 +13,7 @@ from proofs_tests.test_verify import CONFIGURATIONS, STAR, BruteForce, all_sets,
 from scipy.spatial import Delaunay
 
 from exactkernel import Sign
-from exactmesh.verify import Finding, Property, Severity, Verdict, verifier, verify
+from exactmesh.verify import Finding, Property, Severity, Verdict, deciding, verify
 
 Points = npt.NDArray[np.float64]
 Triangles = npt.NDArray[np.int32]
@@ -226,14 +226,14 @@ class TestAblation:
     def test_missing_check(self, check: str, monkeypatch: pytest.MonkeyPatch) -> None:
         brutes = [(BruteForce(points), points) for points in list(CONFIGURATIONS.values())[:6]]
         cases = [(brute, points, rows) for brute, points in brutes for rows in list(all_sets(brute))[::5]]
-        monkeypatch.setattr(verifier, check, holds)  # with it nothing disagrees: TestEverySetOfFivePoints
+        monkeypatch.setattr(deciding, check, holds)  # with it nothing disagrees: TestEverySetOfFivePoints
         assert any(disagreements(*case) for case in cases)
 
     def test_without_simplicity_the_double_cover_passes(self, monkeypatch: pytest.MonkeyPatch) -> None:
         triangles = [(0, 1 + i, 1 + (i + 1) % 5) for i in range(5)]
         claims = [Property.ORIENTATION, Property.EDGE_MANIFOLD, Property.VERTEX_MANIFOLD, Property.ADMISSIBLE]
         assert not verify(STAR, triangles, claims=claims).ok
-        monkeypatch.setattr(verifier, "check_sweep", holds)
+        monkeypatch.setattr(deciding, "check_sweep", holds)
         assert verify(STAR, triangles, claims=claims).ok
 
     def test_enclosed_points(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,7 +241,7 @@ class TestAblation:
         corners = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)]
         assert verify([*corners, (1.0, 1.0)], [(0, 1, 2)]).verdict(Property.DELAUNAY) is Verdict.FAILS
         assert verify([*corners, (4.0, 0.0)], [(0, 1, 2)]).verdict(Property.DELAUNAY) is Verdict.HOLDS
-        monkeypatch.setattr(verifier, "enclosed_points", lambda *_: np.empty(0, dtype=np.intp))
+        monkeypatch.setattr(deciding, "enclosed_points", lambda *_: np.empty(0, dtype=np.intp))
         assert verify([*corners, (1.0, 1.0)], [(0, 1, 2)]).verdict(Property.DELAUNAY) is Verdict.HOLDS
 
 

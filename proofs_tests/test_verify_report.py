@@ -180,6 +180,14 @@ class TestUnreadable:
             assert verify(SQUARE, [(0, 1, index)]).verdict(Property.INDICES) is Verdict.FAILS
         assert verify(SQUARE, np.array([(0, 1, 2**64 - 1)], "u8")).verdict(Property.INDICES) is Verdict.FAILS
 
+    def test_extreme_indices_are_cut_out(self) -> None:
+        """What is out of range is so in the part of the mesh that shows it, and what differs still differs."""
+        for row in (np.array([(2**63 - 1, -(2**63), 0)]), np.array([(2**64 - 1, 2**63, 1)], "u8")):
+            part = verify(SQUARE, row).violations[0].submesh()
+            finding = verify(part.points, part.triangles).findings[Property.INDICES]
+            assert [violation.kind for violation in finding.violations] == [Kind.OUT_OF_RANGE]
+            assert len(np.unique(part.triangles)) == 3
+
     def test_both(self) -> None:
         report = verify([(np.nan, 0.0)], [(0, 1, 2)])
         assert report.findings[Property.DISTINCT_POINTS].because == (Property.FINITE, Property.INDICES)

@@ -26,7 +26,7 @@ from exactmesh.verify import (
     Severity,
     Verdict,
     centres,
-    verifier,
+    deciding,
     verify,
 )
 
@@ -324,13 +324,13 @@ class TestAblation:
         self, name: str, property_: Property, bounds: dict[str, object], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         assert conforming(**bounds).verdict(property_) is Verdict.FAILS
-        monkeypatch.setattr(verifier, name, holds)
+        monkeypatch.setattr(deciding, name, holds)
         assert conforming(**bounds).verdict(property_) is Verdict.HOLDS
 
     def test_control_the_theorem_needs_local_delaunay(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Without it, opposite corners say nothing of the corners behind them."""
         assert self._flipped().verdict(Property.GABRIEL) is Verdict.UNDECIDED
-        monkeypatch.setattr(verifier, "is_locally_delaunay", lambda *_: True)
+        monkeypatch.setattr(deciding, "is_locally_delaunay", lambda *_: True)
         assert self._flipped().verdict(Property.GABRIEL) is Verdict.HOLDS
         points, triangles = self.HIDDEN
         assert gabriel_oracle.encroachers(oracles.rationals(points), triangles, ())

@@ -352,7 +352,9 @@ def displacements(seed: int) -> Iterator[tuple[Points, list[Triangle], PSLG, flo
         moved = [(x + random.choice((0, 0, 0.125)), y + random.choice((0, 0, 0.125))) for x, y in points.tolist()]
         if wanted and len(set(moved)) == len(moved):
             drop = random.randrange(len(wanted)) if random.random() < 0.3 else -1
-            domain = PSLG(moved, [pair for i, pair in enumerate(wanted) if i != drop])
+            pairs = [pair for i, pair in enumerate(wanted) if i != drop]
+            ends = sorted({v for pair in pairs for v in pair})
+            domain = PSLG([moved[v] for v in ends], [(ends.index(a), ends.index(b)) for a, b in pairs])
             yield points.tolist(), kept, domain, random.choice((0.0, 0.125, 0.18, 0.25, math.inf))
 
 

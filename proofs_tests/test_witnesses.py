@@ -197,6 +197,16 @@ class TestMinimal:
         assert violation.magnitude == Fraction(4 * 4) * (2 * 2 * 2 - 1 - 1)
         assert list(faults(violation, Orientation.CCW)) == []
 
+    def test_long_edges(self) -> None:
+        """Against a size a triangle, the one that is named is too large for its own."""
+        points, triangles = [(0, 0), (4, 0), (4, 4), (0, 4)], [(0, 1, 2), (0, 2, 3)]
+        (violation,) = verify(points, triangles, size=[6, 5]).findings[Property.MAX_LENGTH].violations
+        part = violation.submesh()
+        assert violation.is_local
+        assert part.cells == (1,)
+        assert verify(part.points, part.triangles, size=[5]).verdict(Property.MAX_LENGTH) is Verdict.FAILS
+        assert verify(part.points, part.triangles, size=[6]).verdict(Property.MAX_LENGTH) is Verdict.HOLDS
+
     def test_controls(self) -> None:
         """A witness with one cell too many is noticed, and one with one too few."""
         square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (9.0, 9.0)]

@@ -14,6 +14,7 @@ from exactmesh.editing.builder import TriangulationBuilder
 from exactmesh.errors import (
     AdapterError,
     BoundError,
+    CertificateError,
     ChoiceError,
     ClipError,
     CollinearPointsError,
@@ -70,6 +71,7 @@ __all__ = [
     "Arrangement",
     "BoundError",
     "Carve",
+    "CertificateError",
     "ChoiceError",
     "ClipError",
     "CollinearPointsError",

@@ -6,7 +6,18 @@ from typing import cast
 
 import numpy.typing as npt
 
-from exactmesh.verify import Domain, Orientation, Property, Report, Verdict, verify
+from exactmesh.adapters import given_mesh
+from exactmesh.verify import (
+    CONSTRAINED_TRIANGULATION,
+    DELAUNAY_TRIANGULATION,
+    DOMAIN_TRIANGULATION,
+    Domain,
+    Orientation,
+    Property,
+    Report,
+    Verdict,
+    verify,
+)
 
 __all__ = ["assert_admissible", "assert_constrained_delaunay", "assert_delaunay"]
 
@@ -46,7 +57,7 @@ def assert_delaunay(
     ]
     """
     __tracebackhide__ = True
-    _assert_holds(_report(points, triangles, orientation=orientation))
+    _assert_holds(_report(points, triangles, claims=DELAUNAY_TRIANGULATION, orientation=orientation))
 
 
 def assert_admissible(
@@ -88,13 +99,16 @@ def assert_constrained_delaunay(
 
     Raises:
         AssertionError: they are not.
+        ChoiceError: neither the mesh nor the call has segments or a domain.
 
     >>> from exactmesh.conformance import assert_constrained_delaunay
     >>> kite = [(0, 0), (3, -1), (6, 0), (3, 1)]
     >>> assert_constrained_delaunay(kite, [(0, 1, 2), (0, 2, 3)], segments=[(0, 2)])
     """
     __tracebackhide__ = True
-    _assert_holds(_report(points, triangles, segments=segments, domain=domain, orientation=orientation))
+    own = triangles is None and given_mesh(points).domain is not None
+    claims = CONSTRAINED_TRIANGULATION if domain is None and not own else DOMAIN_TRIANGULATION
+    _assert_holds(_report(points, triangles, segments=segments, domain=domain, claims=claims, orientation=orientation))
 
 
 def _report(

@@ -37,7 +37,7 @@ def page_of(report: Report, title: str | None = None) -> str:
     if mesh is None:
         raise ValueError("this report does not have its mesh")
     payload = payload_of(mesh)
-    heading = _counts(mesh) if title is None else title
+    heading = _counts(mesh) if title is None else str(title).encode(errors="replace").decode()  # names of files
     return "".join(_document(report, mesh, payload, heading))
 
 

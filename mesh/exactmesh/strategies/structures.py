@@ -40,8 +40,8 @@ def _spliced(draw: st.DrawFn, low: int, high: int) -> QuadEdge:
     structure = QuadEdge()
     edges = [structure.make_edge() for _ in range(count)]
     ends = [end for edge in edges for end in (edge, edge.sym)]
-    for word in draw(words(0, 3 * high)).tolist():
-        first, second = divmod(word, 2 * max(1, count))
-        if ends and first % len(ends) != second:
-            structure.splice(ends[first % len(ends)], ends[second])
+    chosen = draw(words(0, 6 * high)).tolist()
+    for first, second in zip(chosen[::2], chosen[1::2], strict=False):
+        if ends and (first - second) % len(ends):
+            structure.splice(ends[first % len(ends)], ends[second % len(ends)])
     return structure

@@ -16,11 +16,12 @@ from exactmesh.errors import CertificateError
 from exactmesh.verify.checked import CheckedMesh
 from exactmesh.verify.document import FORMAT, document_of, given_document
 from exactmesh.verify.domain import Domain, Outline, constraints_of
+from exactmesh.verify.given import Extras, Given, of_mesh
 from exactmesh.verify.hashing import mesh_sha256
 from exactmesh.verify.mesh import index_quads, index_triples, points_of
 from exactmesh.verify.properties import Property, Verdict
 from exactmesh.verify.report import Report
-from exactmesh.verify.verifier import Extras, Given, of_mesh, verify
+from exactmesh.verify.verifier import verify
 
 __all__ = ["Certificate", "CertificateCheck", "check_certificate", "read_certificate"]
 

@@ -142,6 +142,7 @@ LOCAL_PROPERTIES = frozenset(
         *(Property.EDGE_MANIFOLD, Property.VERTEX_MANIFOLD, Property.ADMISSIBLE),
         *(Property.DELAUNAY, Property.CONSTRAINED_DELAUNAY, Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE),
         *(Property.WEAKLY_ACUTE, Property.ACUTE, Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA),
+        Property.MAX_LENGTH,
     }
 )
 

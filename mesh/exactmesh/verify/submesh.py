@@ -86,7 +86,8 @@ def cut_out(violation: "Violation") -> Submesh:
     there = [i for i, v in enumerate(violation.indices) if 0 <= v < violation.point_count]
     kept = [violation.indices[i] for i in there]
     number = {v: i for i, v in enumerate(kept)}
-    beyond = {v: v if v < 0 else len(kept) + v for v in violation.indices if v not in number}
+    others = [v for v in violation.indices if v not in number]  # some may be beyond 64 bits
+    beyond = {v: -1 - i if v < 0 else len(kept) + i for i, v in enumerate(others)}
     cells = [tuple({**number, **beyond}[v] for v in corners) for corners in violation.corners]
     points = np.array([violation.points[i] for i in there], dtype=np.float64).reshape(-1, 2)
     rows = {
