@@ -12,8 +12,9 @@ KERNEL, MESH = ROOT / "kernel" / "exactkernel", ROOT / "mesh" / "exactmesh"
 
 #: Rooms that talk to people and files: algorithms know nothing of them.
 OUTER_ROOMS = (
-    *("io", "plot", "cli", "cli_arguments", "demo", "progress", "summary", "triangle", "triangulate_command"),
+    *("io", "plot", "cli", "cli_arguments", "cli_files", "demo", "progress", "summary", "triangle"),
     *("certificate_file", "conformance", "html", "triangulate_file", "verify_file", "__main__"),
+    *("triangulate_command", "verify_command"),
 )
 #: What the verifier may know of exactmesh: no algorithm, nothing that one is made of.
 VERIFIER_MAY = ("exactmesh.verify", "exactmesh.errors")

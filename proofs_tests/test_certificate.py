@@ -322,6 +322,22 @@ class TestCommand:
         assert main(["check-certificate", "a.json", "a.ele"]) == 1
         assert "NOT the certificate of a.ele" in capsys.readouterr().out
 
+    def test_claims_that_do_not_hold(self, capsys: pytest.CaptureFixture[str]) -> None:
+        """``check-certificate CERT MESH && ship`` ships no bad mesh, although CERT is that of MESH."""
+        rewritten(
+            "bad.ele",
+            np.array([(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)]),
+            np.array([(0, 1, 2), (0, 2, 3)], dtype=np.int32),
+        )
+        assert main(["verify", "bad.ele", "--json", "bad.json"]) == 1
+        assert main(["check-certificate", "bad.json", "bad.ele"]) == 1
+        assert main(["check-certificate", "bad.json", "bad.ele", "--again"]) == 1
+        told = capsys.readouterr().out
+        assert "bad.json is the certificate of bad.ele" in told
+        assert "verified again: NOT every claim holds" in told
+        assert main(["verify", "bad.ele", "--claim", "admissible", "--json", "less.json"]) == 0
+        assert main(["check-certificate", "less.json", "bad.ele"]) == 0  # control
+
     def test_domains(self, capsys: pytest.CaptureFixture[str]) -> None:
         from exactmesh.io import write_pslg
 
@@ -356,6 +372,8 @@ class TestCommand:
             ("nix.json", "nix.json: no such file"),
             ("bad.json", "bad.json: no certificate of format"),
             ("bytes.json", "bytes.json: "),
+            ("a.ele", "a.ele: no certificate: "),
+            ("a.ele", "(the order is CERT MESH)"),
             ("domain.json", "about a domain, and the mesh has no segments: --domain FILE"),
         ):
             assert main(["check-certificate", name, "a.ele"]) == 2

@@ -19,7 +19,7 @@ from exactmesh import PSLG, cli, constrained_delaunay, triangulate_file
 from exactmesh.cli import main
 from exactmesh.io import Mesh, read, read_pslg, write, write_pslg
 from exactmesh.progress import COMPILING
-from exactmesh.verify import Report, verify
+from exactmesh.verify import Property, Report, verify
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.25)]
 THIN = [(0.0, 0.0), (4.0, -1.0), (8.0, 0.0), (4.0, 1.0)]
@@ -371,6 +371,46 @@ class TestVerify:
         assert "nowhere" in complaint(capsys, "verify", "good.ele", "--json", "nowhere/report.json")
 
 
+class TestOutputs:
+    """No output of ``verify`` replaces an input or another output, by whatever name; what is refused is untouched."""
+
+    @pytest.fixture(autouse=True)
+    def _mesh(self) -> None:
+        write("good.ele", Mesh(THIN, triangles=DELAUNAY))
+        write_pslg("domain.poly", PSLG(THIN, [(0, 1), (1, 2), (2, 3), (3, 0)]))
+        os.symlink("good.ele", "symbolic")
+        os.link("good.node", "hard")
+
+    @pytest.mark.parametrize("option", ["--json", "--html"])
+    @pytest.mark.parametrize("output", ["good.ele", "./good.node", "symbolic", "hard", "domain.poly"])
+    def test_inputs_stay(self, option: str, output: str, capsys: pytest.CaptureFixture[str]) -> None:
+        before = Path(output).read_bytes()
+        told = complaint(capsys, "verify", "good.ele", "--domain", "domain.poly", option, output)
+        assert f"{option}: {output}: would overwrite the input" in told
+        assert Path(output).read_bytes() == before
+
+    def test_two_outputs_are_two(self, capsys: pytest.CaptureFixture[str]) -> None:
+        for one, other in (("same", "./same"), ("-", "-")):
+            told = complaint(capsys, "verify", "good.ele", "--json", one, "--html", other)
+            assert f"{other}: would overwrite what --json writes" in told
+        assert not Path("same").exists()
+
+    def test_control_others_are_written(self, capsys: pytest.CaptureFixture[str]) -> None:
+        Path("old.html").write_text("old")
+        assert main(["verify", "good.ele", "--json", "new.json", "--html", "old.html"]) == 0
+        page = Path("old.html").read_text(encoding="utf-8")
+        assert page.startswith("<!doctype html>")
+        assert json.loads(Path("new.json").read_text())["ok"] is True
+        capsys.readouterr()
+        assert main(["verify", "good.ele", "--html", "-"]) == 0
+        assert capsys.readouterr().out == page
+        assert not Path("-").exists()
+
+    def test_what_cannot_be_written_is_named_as_given(self, capsys: pytest.CaptureFixture[str]) -> None:
+        told = complaint(capsys, "verify", "good.ele", "--html", "nowhere/page.html")
+        assert told == "exactmesh: nowhere/page.html: No such file or directory\n"
+
+
 class TestInfo:
     """``info`` prints counts and extents that a reader can check by hand."""
 
@@ -501,6 +541,19 @@ class TestTheCommandItself:
     def test_help(self, arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
         assert main(arguments) == 0
         assert "Usage: exactmesh" in capsys.readouterr().out
+
+    def test_flags_take_no_value(self, capsys: pytest.CaptureFixture[str]) -> None:
+        for command in ([], ["triangulate"], ["verify"], ["check-certificate"], ["conformance"]):
+            assert main([*command, "--help"]) == 0
+            told = capsys.readouterr().out
+            assert "--help" in told
+            assert "<bool>" not in told
+
+    def test_every_property_is_named(self, capsys: pytest.CaptureFixture[str]) -> None:
+        """All but what needs more than the command can be given: a diagram, a size function."""
+        assert main(["verify", "--help"]) == 0
+        named = re.split(r"[\s,.]+", capsys.readouterr().out)
+        assert {property_ for property_ in Property if property_ not in named} == {"voronoi_dual", "max_length"}
 
     def test_as_a_module(self, inside: Path) -> None:
         write("bad.ele", Mesh(THIN, triangles=NOT_DELAUNAY))

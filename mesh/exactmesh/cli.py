@@ -7,19 +7,16 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, BinaryIO
+from typing import Annotated
 
 import typer
 
 from exactmesh import __version__
-from exactmesh.cli_arguments import carve_rule, require_file
+from exactmesh.cli_arguments import MeshPath, PlainCommand, PlainGroup, require_file
+from exactmesh.cli_files import read_any
 from exactmesh.conformance.command import conformance
 from exactmesh.triangulate_command import triangulate
-
-if TYPE_CHECKING:
-    from exactmesh.adapters import GivenMesh
-    from exactmesh.io import Mesh
-    from exactmesh.pslg import PSLG
+from exactmesh.verify_command import check_certificate, verify
 
 __all__ = ["app", "main"]
 
@@ -32,14 +29,11 @@ _READER_GONE = 141  # as a shell reports SIGPIPE: neither yes nor no
 _UsageError: type[typer.BadParameter] = typer.BadParameter.__mro__[1]
 
 app = typer.Typer(
+    cls=PlainGroup,
     add_completion=False,
     pretty_exceptions_enable=False,
     help="Planar meshes whose every answer can be checked, and the checker for everybody else's.",
 )
-
-_Mesh = Annotated[
-    str, typer.Argument(metavar="MESH", help="A .ele (its .node beside it), .node, .poly, .npz; or what meshio reads.")
-]
 
 
 def _print_version(wanted: bool) -> None:
@@ -59,161 +53,15 @@ def _common(
         typer.echo(context.get_help())
 
 
-app.command()(triangulate)
-app.command()(conformance)
+app.command(cls=PlainCommand)(triangulate)
+app.command(cls=PlainCommand)(conformance)
+app.command(cls=PlainCommand)(verify)
+app.command("check-certificate", cls=PlainCommand)(check_certificate)
 
 
-@app.command()
-def verify(
-    mesh: _Mesh,
-    claim: Annotated[
-        list[str] | None,
-        typer.Option(metavar="PROPERTY", help="Claim this property (repeatable); default: all that fits."),
-    ] = None,
-    domain: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE", help="What MESH should cover: .poly, .geojson; default: its own segments, or the hull."
-        ),
-    ] = None,
-    carve: Annotated[
-        str | None, typer.Option(metavar="seeds|even-odd", help="Which faces of the domain; default: as its file says.")
-    ] = None,
-    orientation: Annotated[
-        str | None,
-        typer.Option(metavar="ccw|any", help="How cells may be listed; default: ccw, but any of formats of others."),
-    ] = None,
-    min_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is smaller.")] = None,
-    max_angle: Annotated[float | None, typer.Option(metavar="DEGREES", help="Claim that no angle is larger.")] = None,
-    max_area: Annotated[float | None, typer.Option(metavar="AREA", help="Claim that no triangle is larger.")] = None,
-    within: Annotated[
-        float | None, typer.Option(metavar="DISTANCE", help="How far MESH may be from --domain; default: not at all.")
-    ] = None,
-    gabriel: Annotated[
-        bool,
-        typer.Option("--gabriel", help="Claim that no vertex is inside the circle of a boundary edge or segment."),
-    ] = False,
-    json: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write the report as JSON, counted from 0; - prints it.")
-    ] = None,
-    html: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Write a page that shows the mesh and what is wrong with it.")
-    ] = None,
-) -> None:
-    """Check what MESH claims to be: exit code 0 if every claim holds, 1 if not."""
-    require_file(mesh)
-    if domain is None and carve is not None:
-        raise typer.BadParameter("there is no --domain to carve", param_hint="--carve")
-    if domain is None and within is not None:
-        raise typer.BadParameter("there is no --domain to be near to", param_hint="--within")
-    for name, bound in (("min-angle", min_angle), ("max-angle", max_angle), ("max-area", max_area)):
-        if bound is None and name in [word.replace("_", "-") for word in claim or ()]:
-            raise typer.BadParameter(f"{name} needs a bound, by --{name}", param_hint="--claim")
-    from exactkernel.jit import is_cache_warm
-    from exactmesh.progress import working
-    from exactmesh.verify.boundary import walk_convex
-    from exactmesh.verify.chains import walk_chains
-    from exactmesh.verify_file import Shapes, checked_against, checked_alone
-
-    content = _cells_of(mesh)
-    graph = None if domain is None else _domain_of(domain, carve)
-    bounds = Shapes(min_angle=min_angle, max_angle=max_angle, max_area=max_area, gabriel=gabriel, within=within)
-    needed = (walk_convex,) if graph is None and content.segments is None else (walk_convex, walk_chains)
-    base = getattr(content, "base", 0)
-    with working(f"verifying {mesh}", compiling=not is_cache_warm(*needed)):
-        if graph is None:
-            report, note = checked_alone(content, mesh, claim or None, orientation, bounds)
-        else:
-            report, note = checked_against(*graph, domain or "", content, claim or None, orientation, bounds), ""
-    if json is not None and json != "-":
-        _write_text(json, report.to_json())
-    if html is not None:
-        with working(f"writing {html}"):
-            _write_text(html, report.to_html(os.path.basename(mesh)))
-    typer.echo(report.to_json() if json == "-" else str(report))
-    if json != "-" and note:
-        typer.echo(note)
-    if base and json != "-" and report.violations:
-        typer.echo(f"(Numbers in this report count from 0, those in the files from {base}.)")
-    raise typer.Exit(0 if report.ok else _VIOLATION)
-
-
-@app.command(name="check-certificate")
-def check_certificate(
-    certificate: Annotated[str, typer.Argument(metavar="CERT", help="What verify --json wrote.")],
-    mesh: _Mesh,
-    domain: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="What MESH should cover, if verify was told by --domain."),
-    ] = None,
-    again: Annotated[
-        bool, typer.Option("--again", help="Verify MESH once more, by the same claims, and compare the verdicts.")
-    ] = False,
-) -> None:
-    """Check that CERT is about MESH, bit by bit: exit code 0 if it is, 1 if not."""
-    require_file(certificate)
-    require_file(mesh)
-    from exactmesh.certificate_file import checked_certificate, said_of
-    from exactmesh.errors import CertificateError
-    from exactmesh.progress import working
-    from exactmesh.verify import read_certificate
-
-    with open(certificate, "rb") as stream:
-        try:
-            read = read_certificate(stream.read().decode())
-        except (CertificateError, UnicodeDecodeError) as error:
-            raise CertificateError(f"{certificate}: {error}") from None
-    content = _cells_of(mesh)
-    graph = None if domain is None else _domain_of(domain, None)[0]
-    with working(f"checking {mesh}"):
-        check = checked_certificate(read, content, graph, again=again)
-    typer.echo(said_of(check, certificate, mesh))
-    raise typer.Exit(0 if check else _VIOLATION)
-
-
-def _domain_of(path: str, carve: str | None) -> "tuple[PSLG, int]":
-    """Return the domain on file, and what its numbers count from."""
-    rule = None if carve is None else carve_rule(carve)
-    require_file(path)
-    from exactmesh.io import read_graph
-    from exactmesh.progress import working
-
-    with working(f"reading {path}"):
-        pslg, base = read_graph(path)
-    return pslg if rule is None else pslg.with_rule(rule), base
-
-
-def _cells_of(path: str) -> "Mesh | GivenMesh":
-    """Return what is on file, triangles or other cells among it."""
-    from exactmesh.errors import FileFormatError
-    from exactmesh.progress import working
-
-    with working(f"reading {path}"):
-        mesh = _read_any(path)
-    if mesh.triangles is None:
-        raise FileFormatError("there are no triangles on file, only points", path=path)
-    return mesh
-
-
-def _read_any(path: str) -> "Mesh | GivenMesh":
-    from exactmesh.adapters.files import is_own_format, read_foreign
-    from exactmesh.io import read_triangles
-
-    return read_triangles(path) if is_own_format(path) else read_foreign(path)
-
-
-def _write_text(path: str, text: str) -> None:
-    from exactmesh.io.atomic import write_whole
-
-    def write_to(stream: BinaryIO) -> None:
-        stream.write(text.encode() + b"\n")
-
-    write_whole({path: write_to})
-
-
-@app.command()
+@app.command(cls=PlainCommand)
 def plot(
-    mesh: _Mesh,
+    mesh: MeshPath,
     output: Annotated[str, typer.Option("-o", "--output", metavar="PICTURE", help=".png, .svg or .pdf.")],
     title: Annotated[str | None, typer.Option(help="The caption; default: the file's name.")] = None,
 ) -> None:
@@ -225,7 +73,7 @@ def plot(
     from exactmesh.progress import working
 
     with working(f"drawing {mesh}"):
-        content = _read_any(mesh)
+        content = read_any(mesh)
         quads = getattr(content, "quads", ())
         if len(quads):
             raise typer.BadParameter(f"{mesh} has quadrilaterals; verify --html shows them", param_hint="MESH")
@@ -235,8 +83,8 @@ def plot(
     typer.echo(output)
 
 
-@app.command()
-def info(mesh: _Mesh) -> None:
+@app.command(cls=PlainCommand)
+def info(mesh: MeshPath) -> None:
     """Print what MESH holds: counts, bounding box, angles and areas."""
     require_file(mesh)
     from rich.console import Console
@@ -255,7 +103,7 @@ def info(mesh: _Mesh) -> None:
     Console(highlight=False).print(table)
 
 
-@app.command()
+@app.command(cls=PlainCommand)
 def demo(
     folder: Annotated[
         str, typer.Option("-o", "--output", metavar="FOLDER", help="Where the pictures go.")

@@ -21,6 +21,17 @@ def text_writer(text: Callable[[], Iterable[str]]) -> Writer:
     return write_to
 
 
+def _created(temporary: str, path: str) -> BinaryIO:
+    """Open a new file; what prevents it is told of the path that the caller knows."""
+    try:
+        return open(temporary, "xb")
+    except FileExistsError:
+        raise  # this one is in the way
+    except OSError as error:
+        error.filename = path
+        raise
+
+
 def write_whole(files: Mapping[str, Writer]) -> None:
     """Write files beside their places, and move them there when all of them are complete.
 
@@ -34,7 +45,7 @@ def write_whole(files: Mapping[str, Writer]) -> None:
             if os.path.isdir(place):
                 raise IsADirectoryError(21, "Is a directory", path)
             temporary = f"{place}.{os.getpid()}.tmp"
-            with open(temporary, "xb") as stream:
+            with _created(temporary, path) as stream:
                 finished[place] = temporary  # ours only now
                 write(stream)
             if os.path.exists(place):

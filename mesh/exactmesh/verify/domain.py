@@ -112,7 +112,10 @@ def _within(within: float | None) -> float | None:
         return None
     if not isinstance(given, (int, float, np.integer, np.floating)) or isinstance(given, bool) or not given >= 0:
         raise BoundError(f"within is a distance, 0 or more, not {shown(given)}")
-    return float(given)
+    try:
+        return float(given)
+    except OverflowError:
+        raise BoundError(f"within is a distance that is a double, not {shown(given)}") from None
 
 
 def _labels(labels: npt.ArrayLike, m: int) -> FloatArray:
