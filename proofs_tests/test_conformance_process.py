@@ -141,7 +141,6 @@ class TestWhateverItDoes:
         with MesherProcess(f"{tmp_path / 'vandal.py'}:mesh", Limits(seconds=20.0)) as process:
             answer = process.ask(FEW)
         assert answer.fate is fate
-        assert ("the pipe that its answers go through" in answer.message) is (fate is Fate.DIED)
 
     @pytest.mark.parametrize(("each_time", "fate"), [(False, Fate.ANSWERED), (True, Fate.HUNG)])
     def test_it_may_compile_after_each_restart(self, tmp_path: Path, each_time: bool, fate: Fate) -> None:
