@@ -116,6 +116,45 @@ class TestArrays:
             verify(POINTS)
 
 
+class TestWidths:
+    """Law: no column is cut off: rows that are wider than their cells are refused, whatever they came in."""
+
+    class Plain:
+        """Anything with points and triangles."""
+
+        def __init__(self, triangles: object) -> None:
+            self.points = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+            self.triangles = triangles
+
+    @pytest.mark.parametrize("triangles", [[(0, 1, 2, 3)], [(0, 1, 2, 3, 99)], [(0, 1)], [(0, 1, 2), (0, 1)]])
+    def test_triangles(self, triangles: object) -> None:
+        points = self.Plain(None).points
+        for mesh in (self.Plain(triangles), {"vertices": points, "triangles": triangles}):
+            with pytest.raises(ShapeError, match="triangles"):
+                verify(mesh)
+
+    @pytest.mark.parametrize(
+        ("name", "value"),
+        [
+            ("segments", [(0, 1, 7)]),
+            ("regions", "abc"),
+            ("regions", [(1, 2, 3), (1,)]),
+            ("triangle_attributes", [1, 2, 3]),
+            ("triangle_attributes", ["a"]),
+        ],
+    )
+    def test_dictionaries(self, name: str, value: object) -> None:
+        ring = [(0, 1), (1, 2), (2, 0)]
+        content = {"vertices": [(0, 0), (1, 0), (0, 1)], "triangles": [(0, 1, 2)], "segments": ring}
+        assert verify(content).ok
+        with pytest.raises(ShapeError, match=name):
+            verify({**content, "regions": [(0.2, 0.2, 1, 0)], name: value})
+
+    def test_ragged_pair(self) -> None:
+        with pytest.raises(ShapeError, match="second array"):
+            given_mesh((np.zeros((3, 2)), [(0, 1, 2), (1,)]))
+
+
 class TestOwn:
     """What exactmesh made is verified as what it promises, its domain with it; a fault in it is found."""
 

@@ -52,7 +52,8 @@ class Until(Clock):
 
 def is_found(task: Task, name: str, law: str, outcome: str) -> bool:
     """Tell whether the default inputs show the fault: family after family, as ``check`` goes through them."""
-    with MesherProcess(f"{PLACE}:{name}", Limits(seconds=1.5), segments=task is not Task.POINTS) as process:
+    limits = Limits(seconds=1.5 if outcome == Outcome.HANGS else 60.0)  # however busy the machine is
+    with MesherProcess(f"{PLACE}:{name}", limits, segments=task is not Task.POINTS) as process:
         trial = Trial(process, task, "ccw")
         clock = Until(trial, law, outcome)
         for family, strategy in families(task, MAX_SIZE).items():
@@ -72,14 +73,14 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("name", ["right", "noisy"])
     def test_control_no_fault_is_found_where_there_is_none(self, name: str) -> None:
-        result = check(f"{PLACE}:{name}", max_size=12, deadline=600.0)
+        result = check(f"{PLACE}:{name}", max_size=12, max_examples=60, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
-        assert result.tried > 5 * MAX_EXAMPLES
+        assert result.tried > 300
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_has_none(self, task: Task) -> None:
-        result = check("exactmesh", kind=task, max_size=20, max_examples=50, deadline=600.0)
+        result = check("exactmesh", kind=task, max_size=20, max_examples=40, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
 
@@ -100,7 +101,7 @@ class TestCounterexamples:
         ],
     )
     def test_is_the_smallest(self, name: str, law: str, size: int) -> None:
-        result = check(f"{PLACE}:{name}", properties=[law], max_examples=3, max_size=16)
+        result = check(f"{PLACE}:{name}", properties=[law], max_examples=3, max_size=16, timeout=60.0)
         ruling = next(ruling for known, ruling in result.rulings.items() if known == law)
         assert ruling.counterexample is not None
         given = ruling.counterexample.given
@@ -126,7 +127,7 @@ class TestCounterexamples:
 
     def test_the_worst_is_told(self) -> None:
         """A mesher that is wrong by rounding on some inputs and grossly on others is told by the others."""
-        result = check(f"{PLACE}:float_predicates", properties=["delaunay"], max_examples=25, max_size=12)
+        result = check(f"{PLACE}:float_predicates", properties=["delaunay"], max_examples=25, max_size=12, timeout=60.0)
         assert result.outcome("delaunay") is Outcome.WRONG
         assert not result.ok_but_for_rounding
 
@@ -228,7 +229,7 @@ class TestExcuses:
         self, points: list[tuple[float, float]], segments: list[tuple[int, int]] | None, task: Task, outcome: Outcome
     ) -> None:
         mesher = "refuses_segments" if segments else "refuses"
-        result = retry(f"{PLACE}:{mesher}", points, segments, kind=task)
+        result = retry(f"{PLACE}:{mesher}", points, segments, kind=task, timeout=60.0)
         assert result.outcome(Behaviour.ANSWERS) is outcome
 
     def test_an_empty_domain_excuses(self) -> None:

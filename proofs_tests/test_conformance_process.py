@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,7 @@ from exactmesh import ChoiceError, ExactMeshError, MesherError, OptionError
 from exactmesh.conformance import Behaviour, Given, Outcome, Trait, check, loaded, retry
 from exactmesh.conformance.judge import check_legal
 from exactmesh.conformance.laws import Task
-from exactmesh.conformance.process import Fate, Limits, MesherProcess
+from exactmesh.conformance.process import Answer, Fate, Limits, MesherProcess
 from exactmesh.conformance.reduction import reduced
 
 PLACE = "proofs_tests.planted_meshers"
@@ -72,6 +73,88 @@ class TestWhateverItDoes:
         pid = int(tmp_path.joinpath("pid").read_text())
         status = Path(f"/proc/{pid}/stat")
         assert not status.exists() or status.read_text().split()[2] == "Z"
+
+    def test_a_process_that_outlives_it_holds_nobody_up(self, tmp_path: Path) -> None:
+        """In a session of its own it is not ended with the mesher, and keeps the pipes open that it was given."""
+        tmp_path.joinpath("orphan.py").write_text(
+            "import os, subprocess, sys\n"
+            "def mesh(points):\n"
+            "    sleep = [sys.executable, '-c', 'import time; time.sleep(60)']\n"
+            "    child = subprocess.Popen(sleep, start_new_session=True)\n"
+            f"    open({str(tmp_path / 'pid')!r}, 'w').write(str(child.pid))\n"
+            "    os._exit(7)\n"
+        )
+        answer, lives = self.asked_while_another_lives(tmp_path, "orphan")
+        assert answer.message == "ended the process with exit code 7"
+        assert lives  # control: it did hold them
+
+    @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork")
+    def test_a_fork_that_outlives_it_does_not_hide_its_death(self, tmp_path: Path) -> None:
+        tmp_path.joinpath("forker.py").write_text(
+            "import os, time\n"
+            "def mesh(points):\n"
+            "    child = os.fork()\n"
+            "    if child == 0:\n"
+            "        os.setsid()\n"
+            "        time.sleep(60)\n"
+            f"    open({str(tmp_path / 'pid')!r}, 'w').write(str(child))\n"
+            "    os._exit(7)\n"
+        )
+        answer, lives = self.asked_while_another_lives(tmp_path, "forker")
+        assert answer.fate is Fate.DIED
+        assert answer.message == "ended the process with exit code 7"
+        assert lives  # control: the answers' pipe was open
+
+    @staticmethod
+    def asked_while_another_lives(folder: Path, name: str) -> tuple[Answer, bool]:
+        with MesherProcess(f"{folder / name}.py:mesh", Limits(seconds=30.0)) as process:
+            answer = process.ask(FEW)
+        pid = int(folder.joinpath("pid").read_text())
+        lives = Path(f"/proc/{pid}").exists()
+        os.kill(pid, signal.SIGKILL)
+        return answer, lives
+
+    @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs os.fork")
+    def test_a_fork_that_returns_answers_nothing(self, tmp_path: Path) -> None:
+        tmp_path.joinpath("twins.py").write_text(
+            "import os\ndef mesh(points):\n    os.fork()\n    return [(0, 1, len(points) - 1)]\n"
+        )
+        with MesherProcess(f"{tmp_path / 'twins.py'}:mesh") as process:
+            for n in (3, 4, 5, 6):
+                answer = process.ask(Given(MANY.points[:n]))
+                assert answer.triangles is not None
+                assert answer.triangles.tolist() == [[0, 1, n - 1]]  # not the fork's to the question before
+
+    @pytest.mark.parametrize(
+        ("line", "fate"),
+        [
+            pytest.param("os.closerange(3, 100), time.sleep(60)", Fate.DIED, id="closed"),
+            pytest.param("os.write(4, b'x' * 99)", Fate.DIED, id="soiled"),
+            pytest.param("time.sleep(0)", Fate.ANSWERED, id="control"),
+        ],
+    )
+    def test_pipes_that_are_closed_or_soiled_hold_nobody_up(self, tmp_path: Path, line: str, fate: Fate) -> None:
+        tmp_path.joinpath("vandal.py").write_text(
+            "import contextlib, os, time\ndef mesh(points):\n    with contextlib.suppress(OSError):\n"
+            f"        {line}\n    return [(0, 1, 2)]\n"
+        )
+        with MesherProcess(f"{tmp_path / 'vandal.py'}:mesh", Limits(seconds=20.0)) as process:
+            answer = process.ask(FEW)
+        assert answer.fate is fate
+
+    @pytest.mark.parametrize(("each_time", "fate"), [(False, Fate.ANSWERED), (True, Fate.HUNG)])
+    def test_it_may_compile_after_each_restart(self, tmp_path: Path, each_time: bool, fate: Fate) -> None:
+        """The control is as slow in every call."""
+        tmp_path.joinpath("compiles.py").write_text(
+            "import os, time\nstate = []\ndef mesh(points):\n"
+            f"    if {each_time} or not state:\n        state.append(time.sleep(3.0))\n"
+            "    if len(points) == 5:\n        os._exit(3)\n"
+            "    return [(0, 1, 2)]\n"
+        )
+        with MesherProcess(f"{tmp_path / 'compiles.py'}:mesh", Limits(seconds=1.5)) as process:
+            died = process.ask(Given(MANY.points[:5]))
+            assert died.fate is (Fate.HUNG if each_time else Fate.DIED)
+            assert process.ask(FEW).fate is fate
 
     def test_what_is_no_mesh_is_told(self, tmp_path: Path) -> None:
         answers = {

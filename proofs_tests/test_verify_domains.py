@@ -400,7 +400,7 @@ class TestInput:
             (shapely.Polygon(SQUARE[:4]), "expected a PSLG, not a Polygon: make one with PSLG.from_shapely"),
             (
                 {"points": SQUARE, "segments": SPOKES},
-                r"expected a PSLG, not a dict: make one with PSLG\(points, segments",
+                r"not a dict: make one with PSLG\(points, segments\)$",
             ),
             ({"vertices": SQUARE, "segments": SPOKES}, r"PSLG\(domain\['vertices'\], domain\['segments'\]\)$"),
             ({"vertices": 0, "segments": 0, "holes": 0}, r", holes=domain\['holes'\]\)$"),

@@ -359,13 +359,12 @@ class TestListing:
     """Where cells may be listed either way, it is said how many are clockwise; where cells overlap, which of them are
     listed the other way round than most. Of an inverted cell of finite elements that is all that there is to see."""
 
-    FAN = [(0, 0), (4, 0), (4, 4), (0, 4), (-4, 4)]
-    POINTS = [*FAN, (1, -1)]
+    FAN = ((0, 0), (4, 0), (4, 4), (0, 4), (-4, 4))
 
     def test_an_inverted_triangle(self) -> None:
         """The vertex at (1, -1) was pushed across the edge from 0 to 1."""
         rows = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 1, 5)]
-        assert verify(self.POINTS, rows, orientation="any", claims=["admissible"]).ok  # it is its other side
+        assert verify([*self.FAN, (1, -1)], rows, orientation="any", claims=["admissible"]).ok  # it is its other side
         report = verify([*self.FAN, (1, 0.5)], rows, orientation="any", claims=["admissible"])
         (first, *_) = report.findings[Property.ADMISSIBLE].violations
         assert first.triangles == (0, 3)

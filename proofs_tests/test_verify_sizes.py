@@ -13,7 +13,7 @@ from proofs_tests import oracles, shape_oracle
 from exactkernel import BoundError, ShapeError
 from exactkernel.types import FloatArray
 from exactmesh import PSLG, delaunay, refine
-from exactmesh.verify import ChoiceError, Finding, Kind, Property, Severity, Verdict, grading, verify
+from exactmesh.verify import ChoiceError, Finding, Kind, Property, Severity, Verdict, deciding, grading, verify
 
 U = Fraction(1, 2**53)
 MEASURE = 12 * U + 64 * U * U

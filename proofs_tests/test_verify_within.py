@@ -541,5 +541,5 @@ class TestAdvice:
         assert not any(finding.note for finding in report.findings.values())
 
     def test_not_beyond_the_largest_double(self) -> None:
-        with pytest.raises(BoundError, match="largest double"):
+        with pytest.raises(BoundError, match="that is a double"):
             verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)], domain=slanted(1), within=10**400)

@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from exactmesh.adapters.given import GivenMesh, Indices, index_rows, no_pairs, points_of
+from exactmesh.adapters.given import GivenMesh, Indices, array_of, index_rows, no_pairs, points_of
 from exactmesh.errors import AdapterError
 
 __all__ = ["WORDS", "accepts", "convert"]
@@ -47,7 +47,7 @@ def _cells(mesh: object, name: str, width: int) -> Indices:
 
 
 def _of_pair(points: npt.ArrayLike, cells: npt.ArrayLike) -> GivenMesh:
-    rows = np.asarray(cells)
+    rows = array_of(cells, "the second array")
     width = rows.shape[1] if rows.ndim == 2 and rows.size else 3
     if width not in (3, 4):
         raise AdapterError(f"the cells of the pair have {width} corners each; expected 3 or 4")

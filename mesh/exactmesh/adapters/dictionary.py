@@ -9,7 +9,7 @@ import numpy.typing as npt
 from exactkernel.arrays import exact_doubles, finite_points
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray
-from exactmesh.adapters.given import GivenMesh, Indices, index_rows
+from exactmesh.adapters.given import GivenMesh, Indices, array_of, index_rows
 from exactmesh.adapters.own import domain_by_seeds
 from exactmesh.errors import AdapterError
 
@@ -33,18 +33,17 @@ def convert(mesh: object) -> GivenMesh:
     points = exact_doubles(content["vertices"], "vertices")
     if content.get("triangles") is None:
         raise AdapterError("the dictionary has no 'triangles'")
-    triangles = index_rows(content["triangles"], 3, "triangles")
+    triangles = index_rows(content["triangles"], 3, "triangles", nodes=_WITH_MIDDLES)
     segments = index_rows(content.get("segments", ()), 2, "segments")
     if np.shape(content["triangles"])[-1] == _WITH_MIDDLES:
         points, triangles, segments = _without_middles(points, np.asarray(content["triangles"]), segments)
     if not len(segments):
         return GivenMesh(points, triangles, source="a dictionary of triangle")
     regions = _regions(content)
-    attributes = np.asarray(content.get("triangle_attributes", ()))
     return GivenMesh(
         points,
         triangles,
-        labels=attributes.reshape(len(triangles), -1)[:, -1] if len(regions) and attributes.size else None,
+        labels=_labels(content, len(triangles)) if len(regions) else None,
         domain=domain_by_seeds(
             points, segments.astype(np.int64), finite_points(content.get("holes", ()), "holes"), regions
         ),
@@ -65,10 +64,27 @@ def _without_middles(points: FloatArray, nodes: Indices, segments: Indices) -> t
     return points[kept], number[corners], number[segments]
 
 
+def _labels(content: Mapping[str, npt.ArrayLike], m: int) -> FloatArray | None:
+    """Return the last attribute of each triangle, if there are attributes."""
+    attributes = _numbers(content, "triangle_attributes")
+    if not attributes.size:
+        return None
+    if len(attributes) != m or attributes.ndim > 2:
+        raise ShapeError(f"triangle_attributes has shape {attributes.shape}; expected a row for each of {m} triangles")
+    return attributes.reshape(m, -1)[:, -1]
+
+
 def _regions(content: Mapping[str, npt.ArrayLike]) -> FloatArray:
-    regions = np.asarray(content.get("regions", ()), dtype=np.float64)
+    regions = _numbers(content, "regions")
     if not regions.size:
         return np.empty((0, 4))
     if regions.ndim != 2 or regions.shape[1] < 3:
         raise ShapeError(f"regions has shape {regions.shape}; expected (r, 4): x, y, attribute, area")
     return regions
+
+
+def _numbers(content: Mapping[str, npt.ArrayLike], name: str) -> FloatArray:
+    array = array_of(content.get(name, ()), name)
+    if array.size and array.dtype.kind not in "iuf":
+        raise ShapeError(f"{name} has dtype {array.dtype}; expected numbers")
+    return array.astype(np.float64)

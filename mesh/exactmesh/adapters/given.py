@@ -15,7 +15,17 @@ from exactmesh.errors import AdapterError
 from exactmesh.verify.domain import Domain
 from exactmesh.verify.properties import Orientation, Property
 
-__all__ = ["GivenDomain", "GivenMesh", "Indices", "index_rows", "is_a", "no_pairs", "planar_points", "points_of"]
+__all__ = [
+    "GivenDomain",
+    "GivenMesh",
+    "Indices",
+    "array_of",
+    "index_rows",
+    "is_a",
+    "no_pairs",
+    "planar_points",
+    "points_of",
+]
 
 Indices = npt.NDArray[np.integer]
 
@@ -121,16 +131,28 @@ def _require_plane(array: npt.NDArray[np.generic], corners: Indices, what: str) 
         )
 
 
-def index_rows(rows: object, width: int, what: str) -> Indices:
-    """Return rows of at least so many indices, the first ``width`` of each: the corners.
+def array_of(rows: object, what: str) -> npt.NDArray[np.generic]:
+    """Return an array.
+
+    Raises:
+        ShapeError: rows of different lengths.
+    """
+    try:
+        return np.asarray(rows)
+    except ValueError as error:
+        raise ShapeError(f"{what} is no array: {error}") from None
+
+
+def index_rows(rows: object, width: int, what: str, *, nodes: int | None = None) -> Indices:
+    """Return rows of so many indices; of rows of ``nodes``, the first ones: the corners of cells with more nodes.
 
     Raises:
         ShapeError: another shape, or no integers.
     """
-    array = np.asarray(rows)
+    array = array_of(rows, what)
     if array.size == 0:
         return no_pairs(width)
-    if array.ndim != 2 or array.shape[1] < width or array.dtype.kind not in "iu":
+    if array.ndim != 2 or array.shape[1] not in (width, nodes) or array.dtype.kind not in "iu":
         raise ShapeError(f"{what} has shape {array.shape} and dtype {array.dtype}; expected integers (m, {width})")
     signed = array.astype(np.int64) if array.dtype == np.uint64 else array  # beside others, numpy would make it float
-    return signed[:, :width]
+    return cast("Indices", signed[:, :width])

@@ -17,9 +17,9 @@ __all__ = ["WORDS", "accepts", "convert", "given_cells"]
 WORDS = "meshio.Mesh"
 
 #: How many corners a cell has, those first; what follows them lies on its sides or inside.
-_TRIANGLES = ("triangle", "triangle6", "triangle7")
-_QUADS = ("quad", "quad8", "quad9")
-_LINES = ("line", "line3")
+_TRIANGLES = {"triangle": 3, "triangle6": 6, "triangle7": 7}
+_QUADS = {"quad": 4, "quad8": 8, "quad9": 9}
+_LINES = {"line": 2, "line3": 3}
 _PIXEL = [0, 1, 3, 2]  # VTK lists the corners of a pixel row by row
 
 
@@ -49,13 +49,13 @@ def given_cells(points: object, blocks: Iterable[tuple[str, object]], source: st
     lines: list[Indices] = []
     for kind, rows in blocks:
         if kind in _TRIANGLES:
-            triangles.append(index_rows(rows, 3, kind))
+            triangles.append(index_rows(rows, 3, kind, nodes=_TRIANGLES[kind]))
         elif kind in _QUADS:
-            quads.append(index_rows(rows, 4, kind))
+            quads.append(index_rows(rows, 4, kind, nodes=_QUADS[kind]))
         elif kind == "pixel":
             quads.append(index_rows(rows, 4, kind)[:, _PIXEL])
         elif kind in _LINES:
-            lines.append(index_rows(rows, 2, kind))
+            lines.append(index_rows(rows, 2, kind, nodes=_LINES[kind]))
         elif kind == "polygon" and len(shape := np.shape(cast("Indices", rows))) == 2 and shape[1] in (3, 4):
             (triangles if shape[1] == 3 else quads).append(index_rows(rows, shape[1], kind))
         elif kind != "vertex" and len(cast("Indices", rows)):

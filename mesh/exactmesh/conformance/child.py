@@ -24,6 +24,7 @@ __all__ = ["IN_CHILD", "load", "main"]
 IN_CHILD = "EXACTMESH_CONFORMANCE_CHILD"
 
 _GRACE = 5  # seconds after which an orphan ends itself, beyond those it was given
+_LONG = 1e9  # seconds that an alarm can be set to, at least
 _SENTENCE = 300  # characters of an exception that are told
 
 
@@ -140,7 +141,7 @@ def _answer(mesher: Callable[..., object], given: tuple[Any, ...]) -> dict[str, 
 
 def _limit(memory: int) -> None:
     """Let no more memory be taken than told, and leave no core behind."""
-    with contextlib.suppress(ImportError, ValueError, OSError):
+    with contextlib.suppress(ImportError, ValueError, OSError, OverflowError):
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -150,7 +151,7 @@ def _limit(memory: int) -> None:
 def _alarm(seconds: float) -> None:
     """End this process if it still works when nobody waits any longer, whatever code it is in."""
     if sys.platform != "win32":  # where an orphan goes on
-        signal.alarm(int(seconds) + _GRACE if seconds > 0 else 0)
+        signal.alarm(int(min(seconds, _LONG)) + _GRACE if seconds > 0 else 0)
 
 
 def main() -> None:
@@ -173,6 +174,7 @@ def main() -> None:
         send({"fate": "unloadable", "message": str(error)})
         return
     send({"fate": "ready"})
+    server = os.getpid()
     while True:
         try:
             given, seconds = pickle.load(questions)
@@ -180,6 +182,8 @@ def main() -> None:
             return
         _alarm(seconds)
         answer = _answer(mesher, given)
+        if os.getpid() != server:  # the mesher forked, and the fork returned as well
+            os._exit(0)
         _alarm(0)
         send(answer)
 

@@ -32,7 +32,7 @@ exception though there is a triangulation, `wrong` everything else that is retur
 {seconds:g} seconds, `dies` is the end of the process. The worst that was found is told, with the smallest input that
 was found for it. In brackets stands what is special about that input, where no ordinary one did the same: `duplicates`,
 `extreme` (coordinates beyond 2^250 or below 2^-250), `overlap` or `crossing` of segments, `flat` (all points on one
-line).
+line). Where the time was up before all families had their turn, `holds` says less.
 
 Made by `exactmesh conformance --all --output docs/scoreboard.md` on {date}, on {system}. A mesher is
 called as its documentation shows first; how exactly, `exactmesh/conformance/meshers.py` tells. A bound in its
@@ -90,7 +90,7 @@ def _section(task: Task, results: Mapping[str, Conformance]) -> str:
     laws = LAWS[task]
     heading = ["law", *(KNOWN[name].title for name in results)]
     rows = [[f"`{law}`", *(_verdict(result, law) for result in results.values())] for law in laws]
-    tried = ["inputs tried", *(str(result.tried) for result in results.values())]
+    tried = ["inputs tried", *(f"{r.tried}{'' if r.complete else ', time was up'}" for r in results.values())]
     lines = [f"## {_TITLES[task]}", "", _table(heading, [*rows, tried])]
     for name, result in results.items():
         if examples := list(_examples(result)):

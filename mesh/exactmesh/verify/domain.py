@@ -116,7 +116,7 @@ def _within(within: float | None) -> float | None:
     try:
         return float(given)
     except OverflowError:
-        raise BoundError("within is beyond the largest double; infinity allows every distance") from None
+        raise BoundError(f"within is a distance that is a double, not {shown(given)}") from None
 
 
 def _labels(labels: npt.ArrayLike, m: int) -> FloatArray:
