@@ -18,7 +18,8 @@ from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.nearest import nearest_corners, squared_distance
 from exactmesh.verify.placement import displaced_placements, is_within, placed_exactly, used_points
 from exactmesh.verify.properties import Kind, Property, Verdict
-from exactmesh.verify.report import Finding, Violation, digits_above
+from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.text import digits_above
 from exactmesh.verify.triangles import Shapes
 from exactmesh.verify.witness import IndexArray, finding_of, places_of, point_name
 
