@@ -344,7 +344,7 @@ class TestInput:
         assert plain.verdict(Property.COVERS_DOMAIN) is Verdict.UNDECIDED
         full = verify(SQUARE, QUARTERS, domain=PSLG(SQUARE, SPOKES), labels=[0] * 4)
         on_claim = {Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE, Property.REGION_AREAS}
-        bounds = {Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA}
+        bounds = {Property.MIN_ANGLE, Property.MAX_ANGLE, Property.MAX_AREA, Property.MAX_LENGTH, Property.VORONOI_DUAL}
         assert set(full.findings) == set(Property) - on_claim - bounds - {Property.CONVEX}
         document = json.loads(full.to_json())
         assert document["properties"]["covers_domain"]["verdict"] == "holds"
