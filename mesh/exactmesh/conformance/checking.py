@@ -10,7 +10,7 @@ from exactmesh.conformance.given import Given
 from exactmesh.conformance.judge import check_legal
 from exactmesh.conformance.laws import LAWS, Behaviour, Law, Outcome, Task
 from exactmesh.conformance.process import Limits, MesherProcess
-from exactmesh.conformance.reference import Mesher, resolved
+from exactmesh.conformance.reference import Mesher, name_of, resolved
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
 from exactmesh.conformance.trial import Clock, Evidence, Trial
 from exactmesh.errors import ChoiceError, OptionError
@@ -85,7 +85,7 @@ def check(
         if not value > 0:
             raise OptionError(f"{name}={value!r} has to be positive")
     reference, known = resolved(mesher, task)
-    name = mesher if isinstance(mesher, str) else reference
+    name = name_of(mesher, reference)
     listed = orientation or (known.orientation if known else "ccw")
     sources = families(task, max_size)
     tell = progress or (lambda _what, _done, _total: None)
@@ -130,7 +130,7 @@ def retry(
     task = _task_of(kind or (Task.POINTS if segments is None else Task.SEGMENTS))
     check_legal(task, given)
     reference, known = resolved(mesher, task)
-    name = mesher if isinstance(mesher, str) else reference
+    name = name_of(mesher, reference)
     limits = Limits(seconds=timeout, memory=memory)
     with MesherProcess(reference, limits, segments=task is not Task.POINTS) as process:
         trial = Trial(process, task, orientation or (known.orientation if known else "ccw"))
