@@ -181,6 +181,20 @@ class TestFiles:
         assert len(told.err.splitlines()) == 1
         assert str(path) in told.err
 
+    @pytest.mark.parametrize("cut", [1.0, 0.03, 0.3, 0.6, 0.9, 0.97])
+    @pytest.mark.parametrize("binary", [False, True])
+    def test_ansys(self, binary: bool, cut: float, tmp_path: Path) -> None:
+        """The suffix is Gmsh's as well; of a part meshio's reader waits for the rest, which never comes."""
+        path = tmp_path / "ansys.msh"
+        meshio.write(path, meshio.Mesh(SPACE[:, :2], [("triangle", MESH.triangles)]), "ansys", binary=binary)
+        content = path.read_bytes()
+        path.write_bytes(content[: int(cut * len(content))])
+        if cut == 1.0:
+            assert verify(path).triangle_count == len(MESH.triangles)
+        else:
+            with pytest.raises(FileFormatError, match=r"ansys\.msh"):
+                verify(path)
+
     @pytest.mark.parametrize("name", EXACT)
     def test_files_that_were_cut_off(self, name: str, tmp_path: Path) -> None:
         """The end of the file is an error, or a mesh with fewer cells; nobody waits for more."""

@@ -24,6 +24,7 @@ _OWN = (".node", ".ele", ".poly", ".neigh", ".edge", ".npz", ".csv")
 
 
 _BINARY_MEDIT = ".meshb"
+_MSH = ".msh"  # of Gmsh, where "$" is the first character, and of Ansys
 #: The readers of meshio that take open files, and what they expect.
 _STREAMS: dict[str, type[TextStream | ByteStream]] = {
     **dict.fromkeys(
@@ -79,12 +80,22 @@ def read_foreign(path: str) -> GivenMesh:
 def _parsed(meshio: ModuleType, path: str) -> "Mesh":
     """Return what meshio reads: by a stream that ends, if it has one reader for the suffix and that takes streams."""
     suffix = os.path.splitext(path)[1].lower()
+    if suffix == _MSH and _begins_with(path, b"$"):
+        return cast("Mesh", meshio.read(path, "gmsh"))
+    if suffix == _MSH:
+        with ByteStream(path) as bytes_:
+            return cast("Mesh", meshio.read(bytes_, "ansys"))
     kinds = meshio.extension_to_filetypes.get(suffix, [])
     stream = _STREAMS.get(kinds[0]) if len(kinds) == 1 and suffix != _BINARY_MEDIT else None
     if stream is None:
         return cast("Mesh", meshio.read(path))
     with stream(path) as content:
         return cast("Mesh", meshio.read(content, kinds[0]))
+
+
+def _begins_with(path: str, words: bytes) -> bool:
+    with open(path, "rb") as stream:
+        return stream.read(len(words)) == words
 
 
 def _read(path: str) -> "Mesh":

@@ -32,8 +32,14 @@ class ByteStream(io.BufferedReader):
 
     def readline(self, size: int | None = -1, /) -> bytes:
         """Return the next line, b"" at the end."""
-        line = super().readline(size)
-        self._vain = 0 if line else self._vain + 1
+        return self._counted(super().readline(size), size)
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Return so many bytes, or all, b"" at the end."""
+        return self._counted(super().read(size), size)
+
+    def _counted(self, content: bytes, size: int | None) -> bytes:
+        self._vain = 0 if content or size == 0 else self._vain + 1
         if self._vain > _PATIENCE:
             raise EOFError("the file ends too early")
-        return line
+        return content
