@@ -5,13 +5,14 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 from proofs_tests import planted_meshers
 
-from exactmesh import ChoiceError, ExactMeshError, MesherError, OptionError
+from exactmesh import ChoiceError, ExactMeshError, MesherError, OptionError, Property
 from exactmesh.conformance import Behaviour, Given, Outcome, Trait, check, loaded, retry
 from exactmesh.conformance.judge import check_legal
 from exactmesh.conformance.laws import Task
@@ -215,13 +216,27 @@ class TestNames:
         with pytest.raises(MesherError, match=re.escape(told)):
             retry(name, FEW.points)
 
-    def test_what_no_other_process_can_import(self) -> None:
-        def inner(points: object) -> object:
-            return points
+    def test_functions_without_a_name(self) -> None:
+        cells = [(0, 1, 2)]
 
-        for mesher in (inner, lambda points: points):
-            with pytest.raises(MesherError, match="define it with def at the top of a module"):
-                retry(mesher, FEW.points)
+        def inner(_: object) -> object:
+            return cells
+
+        assert retry(inner, FEW.points).ok
+        wrong = retry(lambda _: [(0, 2, 1)], FEW.points)
+        example = wrong.rulings[Property.ORIENTATION].counterexample
+        assert example is not None
+        assert example.mesher == "<<lambda>>"
+        assert example.command == f"retry(mesher, {FEW.literal})"
+        assert "print(retry(mesher, points))" in example.code
+
+    def test_functions_that_no_other_process_can_have(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        lock = threading.Lock()
+        with pytest.raises(MesherError, match="cannot be sent to another process"):
+            retry(lambda points: (lock, points), FEW.points)
+        monkeypatch.setitem(sys.modules, "cloudpickle", None)  # as if it were not installed
+        with pytest.raises(MesherError, match="or pip install cloudpickle"):
+            retry(lambda points: points, FEW.points)
 
     def test_a_known_mesher_does_what_it_does(self) -> None:
         with pytest.raises(MesherError, match="scipy is known for points, not for segments"):

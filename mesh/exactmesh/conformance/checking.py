@@ -11,7 +11,7 @@ from exactmesh.conformance.judge import check_legal
 from exactmesh.conformance.laws import LAWS, Behaviour, Law, Outcome, Task
 from exactmesh.conformance.options import check_counts, check_integer, check_seconds
 from exactmesh.conformance.process import Limits, MesherProcess
-from exactmesh.conformance.reference import Mesher, resolved
+from exactmesh.conformance.reference import Mesher, name_of, resolved
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
 from exactmesh.conformance.trial import Clock, Evidence, Trial
 from exactmesh.errors import ChoiceError, OptionError
@@ -87,7 +87,7 @@ def check(
     check_seconds("deadline", deadline, most=math.inf)
     check_integer("seed", seed)
     reference, known = resolved(mesher, task)
-    name = mesher if isinstance(mesher, str) else reference
+    name = name_of(mesher, reference)
     listed = orientation or (known.orientation if known else "ccw")
     sources = families(task, max_size)
     tell = progress or (lambda _what, _done, _total: None)
@@ -134,7 +134,7 @@ def retry(
     laws = _laws_of(task, properties)
     check_legal(task, given)
     reference, known = resolved(mesher, task)
-    name = mesher if isinstance(mesher, str) else reference
+    name = name_of(mesher, reference)
     with MesherProcess(reference, _limits(timeout, memory), segments=task is not Task.POINTS) as process:
         trial = Trial(process, task, orientation or (known.orientation if known else "ccw"))
         trial.clock, trial.source = Clock(math.inf), source

@@ -5,6 +5,7 @@ cheap. The job and the inputs come in through standard input, pickled, the answe
 output; both are out of the mesher's reach.
 """
 
+import base64
 import contextlib
 import importlib
 import importlib.util
@@ -18,10 +19,13 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["IN_CHILD", "load", "main"]
+__all__ = ["IN_CHILD", "PICKLED", "load", "main"]
 
 #: Set in the environment of every child: a script that asks again, in there, would never end.
 IN_CHILD = "EXACTMESH_CONFORMANCE_CHILD"
+
+#: Begins the reference of a mesher to which no name leads; what follows is the function, pickled, in base 64.
+PICKLED = "pickled:"
 
 _GRACE = 5  # seconds after which an orphan ends itself, beyond those it was given
 _LONG = 1e9  # seconds that an alarm can be set to, at least
@@ -29,11 +33,13 @@ _SENTENCE = 300  # characters of an exception that are told
 
 
 def load(reference: str) -> Callable[..., object]:
-    """Return the callable that "package.module:function" or "path/to/file.py:function" names.
+    """Return the callable that "package.module:function" or "path/to/file.py:function" names, or a pickled one.
 
     Raises:
         ValueError: there is no such thing, or it cannot be called; the message says which.
     """
+    if reference.startswith(PICKLED):
+        return _unpickled(reference)
     place, _, name = reference.rpartition(":")
     if not place or not name:
         raise ValueError(f"{reference!r} is no module:function")
@@ -45,6 +51,14 @@ def load(reference: str) -> Callable[..., object]:
     if not callable(found):
         raise ValueError(f"{reference} cannot be called: it is {type(found).__name__}")
     mesher: Callable[..., object] = found
+    return mesher
+
+
+def _unpickled(reference: str) -> Callable[..., object]:
+    try:
+        mesher: Callable[..., object] = pickle.loads(base64.b64decode(reference.removeprefix(PICKLED)))
+    except Exception as error:
+        raise ValueError(f"the mesher cannot be made again: {_told(error)}") from error
     return mesher
 
 

@@ -1,16 +1,17 @@
 """How a mesher is named, so that another process can import it."""
 
+import base64
 import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from exactmesh.conformance.child import load
+from exactmesh.conformance.child import PICKLED, load
 from exactmesh.conformance.known import KNOWN, Known
 from exactmesh.conformance.laws import Task
 from exactmesh.errors import MesherError
 
-__all__ = ["Mesher", "loaded", "reference_of", "resolved"]
+__all__ = ["Mesher", "loaded", "name_of", "reference_of", "resolved"]
 
 #: What :func:`exactmesh.conformance.check` takes: a callable, the name of a known mesher, or "module:function".
 Mesher = Callable[..., object] | str
@@ -40,10 +41,11 @@ def resolved(mesher: Mesher, task: Task) -> tuple[str, Known | None]:
 
 
 def reference_of(mesher: Callable[..., object]) -> str:
-    """Return the name under which another process can import a callable.
+    """Return the name under which another process can import a callable; of a lambda, and of what was defined within a
+    function or at a prompt, its code.
 
     Raises:
-        MesherError: there is none: it is a lambda, was defined within a function or at a prompt.
+        MesherError: there is neither.
     """
     module, name = getattr(mesher, "__module__", None), getattr(mesher, "__qualname__", None)
     if not module or not name:
@@ -52,11 +54,30 @@ def reference_of(mesher: Callable[..., object]) -> str:
     if module == "__main__":
         place = str(getattr(sys.modules["__main__"], "__file__", "") or "")
     if "<" in name or not place or not _leads_to(mesher, module, name):
-        raise MesherError(
-            f"{module}.{name} cannot be imported by another process: define it with def at the top of a module or "
-            "script, or give module:function"
-        )
+        return _pickled(mesher, f"{module}.{name}")
     return f"{place}:{name}"
+
+
+def _pickled(mesher: Callable[..., object], name: str) -> str:
+    """Return the code of a function that no name leads to."""
+    try:
+        import cloudpickle
+    except ImportError:
+        raise MesherError(
+            f"{name} cannot be imported by another process: define it with def at the top of a module or script, "
+            "give module:function, or pip install cloudpickle"
+        ) from None
+    try:
+        return PICKLED + base64.b64encode(cloudpickle.dumps(mesher)).decode()
+    except Exception as error:
+        raise MesherError(f"{name} cannot be sent to another process: {error}") from None
+
+
+def name_of(mesher: Mesher, reference: str) -> str:
+    """Return what a mesher is called: as it was asked for, or by what it was named where it was defined."""
+    if isinstance(mesher, str):
+        return mesher
+    return f"<{getattr(mesher, '__name__', 'mesher')}>" if reference.startswith(PICKLED) else reference
 
 
 def _leads_to(mesher: object, module: str, name: str) -> bool:

@@ -29,15 +29,25 @@ class Counterexample:
 
     @property
     def command(self) -> str:
-        """A line for the shell that tries this input again."""
+        """A line for the shell that tries this input again; Python for a mesher that has no name there."""
         task = "" if self.task is Task.POINTS else f" --{self.task}"
         given = self.source if self.source.startswith("corpus:") else f'"{self.given.literal}"'
+        if self._is_nameless:
+            star = "" if self.given.segments is None else "*"
+            return f"retry(mesher, {star}{self.given.literal}{self._kind})"
         return f"exactmesh conformance {self.mesher}{task} --input {given}"
+
+    @property
+    def _kind(self) -> str:
+        return "" if self.task is Task.POINTS else f", kind={str(self.task)!r}"
+
+    @property
+    def _is_nameless(self) -> bool:
+        return self.mesher.startswith("<")  # a lambda, or what was defined within a function
 
     @property
     def code(self) -> str:
         """Python that tries this input again, in a process of its own, and prints what comes of it."""
-        task = "" if self.task is Task.POINTS else f", kind={str(self.task)!r}"
         if self.source.startswith("corpus:"):
             imported, lines = "case_named, retry", [f"given = case_named({self.source[7:]!r}).make()"]
             arguments = ["given.points", "given.segments"]
@@ -47,8 +57,15 @@ class Counterexample:
             arguments = ["points", "segments"]
             if self.given.segments is not None:
                 lines.append(f"segments = [{', '.join(f'({a}, {b})' for a, b in self.given.segments.tolist())}]")
-        told = ", ".join([repr(self.mesher), *arguments[: 1 if self.given.segments is None else 2]])
-        return "\n".join([f"from exactmesh.conformance import {imported}", "", *lines, f"print(retry({told}{task}))"])
+        told = ", ".join(
+            [
+                "mesher" if self._is_nameless else repr(self.mesher),
+                *arguments[: 1 if self.given.segments is None else 2],
+            ]
+        )
+        return "\n".join(
+            [f"from exactmesh.conformance import {imported}", "", *lines, f"print(retry({told}{self._kind}))"]
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
