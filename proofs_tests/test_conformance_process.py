@@ -130,7 +130,7 @@ class TestWhateverItDoes:
         ("line", "fate"),
         [
             pytest.param("os.closerange(3, 100), time.sleep(60)", Fate.DIED, id="closed"),
-            pytest.param("os.write(4, b'x' * 99)", Fate.DIED, id="soiled"),
+            pytest.param("os.write(4, b'garbage')", Fate.DIED, id="soiled"),
             pytest.param("time.sleep(0)", Fate.ANSWERED, id="control"),
         ],
     )
@@ -207,6 +207,7 @@ class TestNames:
             ("no_such_module:f", "cannot be imported: ModuleNotFoundError"),
             ("math:no_such_function", "there is no 'no_such_function' in math"),
             ("math:pi", "cannot be called: it is float"),
+            ("math.pi", "did you mean math.pi:FUNCTION?"),
             ("no/such/file.py:f", "there is no file"),
             (":f", "is no module:function"),
         ],
@@ -269,11 +270,42 @@ class TestNames:
             ({"max_examples": 0}, OptionError),
             ({"timeout": -1.0}, OptionError),
             ({"deadline": float("nan")}, OptionError),
+            ({"timeout": float("inf")}, OptionError),
+            ({"timeout": 10**400}, OptionError),
+            ({"timeout": "a"}, OptionError),
+            ({"deadline": 10**400}, OptionError),
+            ({"max_examples": 1.5}, OptionError),
+            ({"max_examples": "a"}, OptionError),
+            ({"max_size": 2}, OptionError),
+            ({"memory": -5}, OptionError),
+            ({"memory": 0}, OptionError),
+            ({"seed": "x"}, OptionError),
+            ({"properties": 3}, OptionError),
         ],
     )
     def test_wrong_arguments(self, arguments: dict[str, object], error: type[Exception]) -> None:
         with pytest.raises(error):
             check("exactmesh", **arguments)  # type: ignore[arg-type]  # that is the point
+
+    def test_control_odd_arguments_that_are_right(self) -> None:
+        numbers = {"timeout": 1e300, "memory": 10**30, "deadline": float("inf"), "seed": -1, "max_examples": 1}
+        assert check("exactmesh", max_size=4, **numbers).ok  # type: ignore[arg-type]  # a dictionary has one type
+
+    @pytest.mark.parametrize(
+        ("points", "segments"),
+        [
+            ([(0, 0), (float("inf"), 0), (1, 1)], None),
+            ([(0, 0), (1,)], None),
+            (FEW.points, "abc"),
+            (FEW.points, [(0, 1, 2)]),
+            (FEW.points, [(0, 1.5)]),
+            (FEW.points, [(0, 7)]),
+        ],
+    )
+    def test_what_is_no_input(self, points: list[tuple[float, ...]], segments: object) -> None:
+        with pytest.raises(ExactMeshError):
+            retry("exactmesh", points, segments)  # type: ignore[arg-type]  # that is the point
+        assert retry("exactmesh", FEW.points, [(0, 1)]).ok  # control
 
 
 class TestReduction:
@@ -303,6 +335,17 @@ class TestReduction:
     def test_control_nothing_is_left_out_of_what_is_needed(self) -> None:
         assert reduced(MANY, is_legal, lambda given: len(given.points) >= 25).size <= MANY.size
         assert len(reduced(MANY, is_legal, lambda given: len(given.points) >= 25).points) == 25
+
+    def test_everyday_numbers_come_first(self) -> None:
+        """Even before fewer points; but what is only wrong far out is told as it is."""
+        wild = Given.of([(0, 1), (0, 0), (1, -3e64)])
+        tame = Given.of([(0, 0), (6, 12), (274, 498), (5, 1)])
+        assert tame.size < wild.size
+        assert wild.traits == tame.traits == frozenset()
+        anywhere = reduced(wild, is_legal, lambda given: len(given.points) == 3 and Trait.FLAT not in given.traits)
+        assert np.abs(anywhere.points).max() <= 100
+        far = reduced(wild, is_legal, lambda given: bool((np.abs(given.points) > 1e60).any()))
+        assert np.abs(far.points).max() > 1e60
 
     def test_traits_are_not_taken_on(self) -> None:
         wanted = Given.of([(0.25, 0), (1.5, 0.125), (0, 1), (2, 2.0625)])

@@ -127,7 +127,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SystemExit:  # what typer makes of a closed pipe; its code 1 would say "a violation"
         return _READER_GONE
     except _UsageError as error:
-        return _complain(f"{error.format_message()} ({_advice(arguments)}see exactmesh --help)")
+        command = getattr(getattr(error, "ctx", None), "command_path", "exactmesh")
+        return _complain(f"{error.format_message()} ({_advice(arguments)}see {command} --help)")
     except OSError as error:
         place = "" if error.filename is None else f"{error.filename}: "
         return _complain(f"{place}{error.strerror or error}")

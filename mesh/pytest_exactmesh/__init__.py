@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,6 +58,9 @@ def pytest_configure(config: pytest.Config) -> None:
     """Collect the suite, if there is a mesher to test and the suite is not named already."""
     if config.getoption("--mesher") is None:
         return
+    here = str(config.invocation_params.dir)
+    if here not in sys.path:
+        sys.path.insert(0, here)  # as python -m pytest has it, and the command exactmesh conformance
     package = importlib.util.find_spec(_SUITE)
     assert package is not None
     assert package.origin is not None

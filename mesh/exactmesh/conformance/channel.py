@@ -17,6 +17,8 @@ from collections import deque
 from pathlib import Path
 from typing import IO, Any
 
+from exactmesh.conformance.child import MARK
+
 __all__ = ["Channel", "EndedError", "SilentError"]
 
 _CHILD = Path(__file__).with_name("child.py")
@@ -137,10 +139,11 @@ def _speak(pipe: IO[bytes], questions: "queue.SimpleQueue[object]") -> None:
 def _listen(pipe: IO[bytes], answers: "queue.SimpleQueue[dict[str, Any] | None]") -> None:
     with contextlib.suppress(OSError), pipe:
         try:
-            while True:
-                answers.put(pickle.load(pipe))
-        except Exception:  # it is closed, or what came is cut off: either way it will say no more
-            answers.put(None)
+            while pipe.read(len(MARK)) == MARK:
+                answers.put(pickle.loads(pipe.read(int.from_bytes(pipe.read(8), "big"))))
+        except Exception:  # what came is cut off
+            pass
+        answers.put(None)  # whatever comes then, it will say no more
 
 
 def _remember(pipe: IO[bytes], printed: "deque[str]") -> None:

@@ -1,14 +1,15 @@
 """check: put a mesher on trial; retry: one input only."""
 
 import math
+import sys
 from collections.abc import Callable, Collection, Mapping
 
 import numpy.typing as npt
 
-from exactkernel.arrays import finite_points
 from exactmesh.conformance.given import Given
 from exactmesh.conformance.judge import check_legal
 from exactmesh.conformance.laws import LAWS, Behaviour, Law, Outcome, Task
+from exactmesh.conformance.options import check_counts, check_integer, check_seconds
 from exactmesh.conformance.process import Limits, MesherProcess
 from exactmesh.conformance.reference import Mesher, name_of, resolved
 from exactmesh.conformance.result import Conformance, Counterexample, Ruling
@@ -69,6 +70,7 @@ def check(
     Raises:
         MesherError: the mesher cannot be imported by another process.
         ChoiceError: an unknown kind or property.
+        OptionError: a number that is none, or out of range.
         HypothesisUnavailableError: hypothesis is not installed.
 
     >>> from exactmesh.conformance import check
@@ -81,16 +83,16 @@ def check(
 
     task = _task_of(kind)
     laws = _laws_of(task, properties)
-    for name, value in (("max_examples", max_examples), ("deadline", deadline), ("timeout", timeout)):
-        if not value > 0:
-            raise OptionError(f"{name}={value!r} has to be positive")
+    check_counts(max_examples=max_examples, max_size=max_size)
+    check_seconds("deadline", deadline, most=math.inf)
+    check_integer("seed", seed)
     reference, known = resolved(mesher, task)
     name = name_of(mesher, reference)
     listed = orientation or (known.orientation if known else "ccw")
     sources = families(task, max_size)
     tell = progress or (lambda _what, _done, _total: None)
     steps = len(sources) + len(laws)
-    with MesherProcess(reference, Limits(seconds=timeout, memory=memory), segments=task is not Task.POINTS) as process:
+    with MesherProcess(reference, _limits(timeout, memory), segments=task is not Task.POINTS) as process:
         process.warm_up()
         _warm_up()
         clock, trial = Clock(deadline), Trial(process, task, listed)
@@ -115,6 +117,7 @@ def retry(
     segments: npt.ArrayLike | None = None,
     *,
     kind: Task | str | None = None,
+    properties: Collection[Law | str] | None = None,
     source: str = "",
     timeout: float = Limits.seconds,
     memory: int = Limits.memory,
@@ -126,18 +129,24 @@ def retry(
     >>> retry("exactmesh", [(0, 0), (1, 0), (1, 1), (0, 1)]).ok
     True
     """
-    given = Given.of(finite_points(points), segments)
+    given = Given.of(points, segments)
     task = _task_of(kind or (Task.POINTS if segments is None else Task.SEGMENTS))
+    laws = _laws_of(task, properties)
     check_legal(task, given)
     reference, known = resolved(mesher, task)
     name = name_of(mesher, reference)
-    limits = Limits(seconds=timeout, memory=memory)
-    with MesherProcess(reference, limits, segments=task is not Task.POINTS) as process:
+    with MesherProcess(reference, _limits(timeout, memory), segments=task is not Task.POINTS) as process:
         trial = Trial(process, task, orientation or (known.orientation if known else "ccw"))
         trial.clock, trial.source = Clock(math.inf), source
         trial.judgement(given)
-    evidence = {law: next(iter(trial.worst(law)), None) for law in LAWS[task]}
+    evidence = {law: next(iter(trial.worst(law)), None) for law in laws}
     return Conformance(name, task, _rulings(name, task, trial, evidence), trial.tried, process.restarts, True)
+
+
+def _limits(timeout: float, memory: int) -> Limits:
+    check_seconds("timeout", timeout, most=sys.float_info.max)
+    check_counts(memory=memory)
+    return Limits(seconds=timeout, memory=memory)
 
 
 def _rulings(name: str, task: Task, trial: Trial, evidence: Mapping[Law, Evidence | None]) -> dict[Law, Ruling]:
@@ -171,6 +180,8 @@ def _laws_of(task: Task, properties: Collection[Law | str] | None) -> tuple[Law,
     """Return the laws that are of interest; whether it answers at all always is."""
     if properties is None:
         return LAWS[task]
+    if not isinstance(properties, Collection):
+        raise OptionError(f"properties={properties!r} is no list of laws")
     names = [str(name).replace("-", "_") for name in ((properties,) if isinstance(properties, str) else properties)]
     for name in names:
         if name not in LAWS[task]:

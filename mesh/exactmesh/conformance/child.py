@@ -19,13 +19,16 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["IN_CHILD", "PICKLED", "load", "main"]
+__all__ = ["IN_CHILD", "MARK", "PICKLED", "load", "main"]
 
 #: Set in the environment of every child: a script that asks again, in there, would never end.
 IN_CHILD = "EXACTMESH_CONFORMANCE_CHILD"
 
 #: Begins the reference of a mesher to which no name leads; what follows is the function, pickled, in base 64.
 PICKLED = "pickled:"
+
+#: Before each answer and its length: what a mesher writes into the pipe is no answer.
+MARK = b"\0exactmesh answers\0"
 
 _GRACE = 5  # seconds after which an orphan ends itself, beyond those it was given
 _LONG = 1e9  # seconds that an alarm can be set to, at least
@@ -176,7 +179,8 @@ def main() -> None:
     os.dup2(2, 1)  # what the mesher prints goes where errors go
 
     def send(answer: dict[str, Any]) -> None:
-        pickle.dump(answer, answers, protocol=pickle.HIGHEST_PROTOCOL)
+        pickled = pickle.dumps(answer, protocol=pickle.HIGHEST_PROTOCOL)
+        answers.write(MARK + len(pickled).to_bytes(8, "big") + pickled)
         answers.flush()
 
     job = pickle.load(questions)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 __all__ = ["conformance"]
 
 _BROKEN = 1
+_UNFINISHED = 3
+_WIDE = 160  # columns, where no terminal says how many
 
 
 def conformance(
@@ -54,19 +56,20 @@ def conformance(
     ] = None,
     list_: Annotated[bool, typer.Option("--list", help="List the known meshers and the corpus.")] = False,
 ) -> None:
-    """Hunt the bugs of MESHER: exit code 0 if every law holds, 1 if not.
+    """Hunt the bugs of MESHER: exit code 0 if every law holds, 1 if not, 3 if the time was up too early to tell.
 
     It runs in a process of its own, where it may crash or hang.
     """
-    from rich.console import Console
-
-    console = Console(highlight=False)
     if list_:
-        _list(console)
+        _list(_console())
         return
     if all_:
+        _refuse_with_all(MESHER=mesher, input=input_, law=law, segments=segments, domain=domain)
+        _refuse_with_all(orientation=orientation, allow_rounding=allow_rounding)
         _write_scoreboard(output, deadline, timeout, seed)
         return
+    if output is not None:
+        raise typer.BadParameter("it is for --all", param_hint="--output")
     if mesher is None:
         raise typer.BadParameter("which mesher? (--list names those that are known)", param_hint="MESHER")
     if segments and domain:
@@ -80,10 +83,26 @@ def conformance(
     if input_ is None:
         result = _hunted(mesher, task, law, max_examples, max_size, deadline, timeout, orientation, seed)
     else:
-        result = _retried(mesher, task, input_, timeout, orientation)
-    print_result(result, console)
-    holds = result.ok_but_for_rounding if allow_rounding else result.ok
-    raise typer.Exit(0 if holds else _BROKEN)
+        result = _retried(mesher, task, input_, law, timeout, orientation)
+    print_result(result, _console())
+    if not (result.ok_but_for_rounding if allow_rounding else result.ok):
+        raise typer.Exit(_BROKEN)
+    raise typer.Exit(0 if result.complete else _UNFINISHED)
+
+
+def _console() -> "Console":
+    from rich.console import Console
+
+    width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else _WIDE
+    return Console(highlight=False, width=width)
+
+
+def _refuse_with_all(**given: object) -> None:
+    """Refuse what would have no effect on the scoreboard."""
+    for name, value in given.items():
+        if value:
+            hint = name if name.isupper() else f"--{name.replace('_', '-')}"
+            raise typer.BadParameter("--all is for all known meshers and laws, and excludes it", param_hint=hint)
 
 
 def _hunted(
@@ -121,13 +140,22 @@ def _hunted(
         )
 
 
-def _retried(mesher: str, task: "Task", text: str, timeout: float, orientation: str | None) -> "Conformance":
+def _retried(
+    mesher: str, task: "Task", text: str, laws: list[str] | None, timeout: float, orientation: str | None
+) -> "Conformance":
     from exactmesh.conformance import retry
     from exactmesh.conformance.inputs import given_input
 
     given, source = given_input(text, task)
     return retry(
-        mesher, given.points, given.segments, kind=task, source=source, timeout=timeout, orientation=orientation
+        mesher,
+        given.points,
+        given.segments,
+        kind=task,
+        properties=laws or None,
+        source=source,
+        timeout=timeout,
+        orientation=orientation,
     )
 
 

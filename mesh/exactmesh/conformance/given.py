@@ -1,19 +1,23 @@
 """One input of a mesher, and the traits of it that excuse something."""
 
 from dataclasses import dataclass
+from decimal import Decimal
 from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from exactkernel.arrays import finite_points
 from exactkernel.batch import orient2d_batch
 from exactkernel.types import FloatArray
 from exactmesh.crossings import Meeting, find_crossings
+from exactmesh.verify.mesh import index_pairs
 
 __all__ = ["Given", "IndexArray", "Trait"]
 
 _LARGE = 2.0**250
+_EVERYDAY = 2.0**30  # the order in which inputs are told depends on it, no verdict
 
 IndexArray = npt.NDArray[np.int64]
 
@@ -35,12 +39,19 @@ class Trait(StrEnum):
 
 
 def digits(value: float) -> int:
-    """Return how long the number is when it is written, ".0" left out.
+    """Return how long the number is when it is written without an exponent, ".0" left out.
 
-    >>> digits(60.0), digits(62.9)
-    (2, 4)
+    >>> digits(60.0), digits(62.9), digits(-3e64)
+    (2, 4, 66)
     """
-    return len(repr(value).removesuffix(".0"))
+    text = repr(value)
+    return len(format(Decimal(text), "f") if "e" in text else text.removesuffix(".0"))
+
+
+def _between(points: FloatArray, most: float) -> bool:
+    """Tell whether the magnitudes of all coordinates but 0 are from 1 / most to most."""
+    magnitudes = np.abs(points[points != 0])
+    return bool(((magnitudes <= most) & (magnitudes >= 1 / most)).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +73,14 @@ class Given:
 
     @classmethod
     def of(cls, points: npt.ArrayLike, segments: npt.ArrayLike | None = None) -> "Given":
-        """Return the input with arrays of its own: O(n + s)."""
-        pairs = None if segments is None else np.array(segments, dtype=np.int64).reshape(-1, 2)
-        return cls(np.array(points, dtype=np.float64).reshape(-1, 2), pairs)
+        """Return the input with arrays of its own: O(n + s).
+
+        Raises:
+            ShapeError: the arrays are no (n, 2) and (s, 2), or the indices no integers.
+            CoordinateError: a coordinate is no finite double.
+        """
+        pairs = None if segments is None else np.array(index_pairs(segments), dtype=np.int64)
+        return cls(np.array(finite_points(points)), pairs)
 
     @property
     def key(self) -> bytes:
@@ -79,11 +95,13 @@ class Given:
             return points
         return f"({points}, [{', '.join(f'({a}, {b})' for a, b in self.segments.tolist())}])"
 
-    @property
-    def size(self) -> tuple[int, int, int, int]:
-        """What makes an input smaller than another: fewer traits, fewer points, fewer segments, fewer digits."""
+    @cached_property
+    def size(self) -> tuple[int, bool, int, int, int]:
+        """What makes an input smaller than another: fewer traits, numbers as people have them, fewer points, fewer
+        segments, fewer digits."""
         return (
             len(self.traits),
+            not _between(self.points, _EVERYDAY),
             len(self.points),
             0 if self.segments is None else len(self.segments),
             sum(digits(x) for x in self.points.ravel().tolist()),
@@ -98,8 +116,7 @@ class Given:
             found.add(Trait.DUPLICATES)
         if len(positions) < 3 or not orient2d_batch(positions[0], positions[-1], positions).any():
             found.add(Trait.FLAT)
-        magnitudes = np.abs(self.points[self.points != 0])
-        if ((magnitudes > _LARGE) | (magnitudes < 1 / _LARGE)).any():
+        if not _between(self.points, _LARGE):
             found.add(Trait.EXTREME)
         if self.segments is not None and len(self.segments):
             kinds = find_crossings(self.points, self.segments).kinds

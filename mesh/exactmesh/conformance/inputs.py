@@ -2,10 +2,9 @@
 
 import ast
 import os
+from typing import Any
 
-import numpy as np
-
-from exactkernel.arrays import finite_points
+from exactkernel.errors import shown
 from exactmesh.conformance.corpus import case_named
 from exactmesh.conformance.given import Given
 from exactmesh.conformance.laws import Task
@@ -24,6 +23,7 @@ def given_input(text: str, task: Task) -> tuple[Given, str]:
 
     Raises:
         OptionError: none of these, or no segments where some are wanted.
+        ShapeError, CoordinateError: no arrays (n, 2) and (s, 2), or not of finite doubles and integers.
 
     >>> given_input("[(0, 0), (1, 0), (0, 1)]", Task.POINTS)[0].points.shape
     (3, 2)
@@ -37,11 +37,18 @@ def given_input(text: str, task: Task) -> tuple[Given, str]:
         return _fitting(Given.of(content.points, content.segments), task), text
     try:
         literal = ast.literal_eval(text.strip())
-        if isinstance(literal, tuple) and len(literal) == 2 and np.ndim(literal[0]) == 2:
-            return _fitting(Given.of(finite_points(literal[0]), literal[1]), task), ""
-        return _fitting(Given.of(finite_points(literal)), task), ""
-    except (SyntaxError, TypeError, MemoryError, RecursionError) as error:
-        raise OptionError(f"--input is no file, no corpus:NUMBER and no list of points: {error}") from None
+    except (SyntaxError, TypeError, ValueError, MemoryError, RecursionError):
+        raise OptionError(
+            f"--input {shown(text)} is no file that is there, no corpus:NUMBER and no list of points in numbers"
+        ) from None
+    if isinstance(literal, tuple) and len(literal) == 2 and isinstance(literal[0], list | tuple) and _has_rows(literal):
+        return _fitting(Given.of(*literal), task), ""
+    return _fitting(Given.of(literal), task), ""
+
+
+def _has_rows(literal: tuple[Any, Any]) -> bool:
+    """Tell points and segments from two points: the first of the pair has rows."""
+    return not literal[0] or isinstance(literal[0][0], list | tuple)
 
 
 def _fitting(given: Given, task: Task) -> Given:

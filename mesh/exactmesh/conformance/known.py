@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 
 from exactmesh.conformance.laws import Task
 
@@ -16,12 +17,14 @@ class Known:
     Attributes:
         title: its name in tables.
         package: the distribution on PyPI.
+        module: what is imported of it.
         functions: for each task that it does, the function of :mod:`exactmesh.conformance.meshers` which calls it.
         orientation: "ccw" if it says that triangles are listed so, else "any".
     """
 
     title: str
     package: str
+    module: str
     functions: Mapping[Task, str]
     orientation: str = "ccw"
 
@@ -33,6 +36,11 @@ class Known:
         except PackageNotFoundError:
             return ""
 
+    @property
+    def is_installed(self) -> bool:
+        """Whether it can be imported, wherever it is from."""
+        return find_spec(self.module) is not None
+
 
 def _tasks(function: str, *tasks: Task) -> dict[Task, str]:
     return {task: f"{function}_{task}" for task in tasks}
@@ -40,14 +48,14 @@ def _tasks(function: str, *tasks: Task) -> dict[Task, str]:
 
 #: The meshers that have a name: ``check("scipy")``.
 KNOWN: dict[str, Known] = {
-    "exactmesh": Known("exactmesh", "exactmesh", _tasks("exactmesh", *Task)),
-    "triangle": Known("Triangle", "triangle", _tasks("triangle", Task.POINTS, Task.SEGMENTS)),
-    "meshpy": Known("meshpy (Triangle)", "meshpy", _tasks("meshpy", Task.POINTS, Task.SEGMENTS)),
-    "cgal": Known("CGAL", "cgal", _tasks("cgal", Task.POINTS, Task.SEGMENTS)),
-    "cdt": Known("CDT", "pythoncdt", _tasks("cdt", *Task)),
-    "geos": Known("shapely (GEOS)", "shapely", _tasks("geos", Task.POINTS, Task.DOMAIN), "any"),
-    "scipy": Known("scipy (Qhull)", "scipy", _tasks("scipy", Task.POINTS)),
-    "matplotlib": Known("matplotlib (Qhull)", "matplotlib", _tasks("matplotlib", Task.POINTS)),
-    "gmsh": Known("gmsh", "gmsh", _tasks("gmsh", Task.POINTS), "any"),
-    "startinpy": Known("startinpy", "startinpy", _tasks("startinpy", Task.POINTS)),
+    "exactmesh": Known("exactmesh", "exactmesh", "exactmesh", _tasks("exactmesh", *Task)),
+    "triangle": Known("Triangle", "triangle", "triangle", _tasks("triangle", Task.POINTS, Task.SEGMENTS)),
+    "meshpy": Known("meshpy (Triangle)", "meshpy", "meshpy", _tasks("meshpy", Task.POINTS, Task.SEGMENTS)),
+    "cgal": Known("CGAL", "cgal", "CGAL", _tasks("cgal", Task.POINTS, Task.SEGMENTS)),
+    "cdt": Known("CDT", "pythoncdt", "pythoncdt", _tasks("cdt", *Task)),
+    "geos": Known("shapely (GEOS)", "shapely", "shapely", _tasks("geos", Task.POINTS, Task.DOMAIN), "any"),
+    "scipy": Known("scipy (Qhull)", "scipy", "scipy", _tasks("scipy", Task.POINTS)),
+    "matplotlib": Known("matplotlib (Qhull)", "matplotlib", "matplotlib", _tasks("matplotlib", Task.POINTS)),
+    "gmsh": Known("gmsh", "gmsh", "gmsh", _tasks("gmsh", Task.POINTS), "any"),
+    "startinpy": Known("startinpy", "startinpy", "startinpy", _tasks("startinpy", Task.POINTS)),
 }

@@ -11,7 +11,7 @@ import numpy as np
 
 from exactkernel.types import FloatArray
 from exactmesh.conformance.channel import Channel, EndedError, SilentError
-from exactmesh.conformance.child import IN_CHILD
+from exactmesh.conformance.child import IN_CHILD, PICKLED
 from exactmesh.conformance.given import Given, IndexArray
 from exactmesh.errors import MesherError
 
@@ -138,7 +138,8 @@ class MesherProcess:
         if answer["fate"] != "ready":
             self.close()
             told = "importing it " + answer["message"] if answer["fate"] in _LOST else answer["message"]
-            raise MesherError(f"{self.reference}: {told}")
+            name = "the function" if self.reference.startswith(PICKLED) else self.reference
+            raise MesherError(f"{name}: {told}")
         return self._channel
 
     def _answer(self, channel: Channel, question: object, seconds: float) -> dict[str, Any]:

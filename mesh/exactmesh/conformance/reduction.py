@@ -4,19 +4,22 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from exactkernel.types import FloatArray
 from exactmesh.conformance.given import Given, digits
 
 __all__ = ["reduced"]
 
 _DIGITS = (0, 1, 2, 3, 4, 6, 8, 12)  # decimals that are tried
+_POWERS = (0, 1, 2, 3, 6, 9)  # of ten, instead of a larger one
+_EXPONENTS = (4, 7, 10, 20)  # of two, which the largest coordinate is brought to
 
 
 def reduced(given: Given, is_legal: Callable[[Given], bool], still: Callable[[Given], bool]) -> Given:
     """Return an input on which ``still`` holds, from which no single step leads to a smaller one.
 
-    A step leaves out segments or points (half of them, a quarter, ... one), moves all points to the origin, or rounds
-    coordinates, all or one. ``still`` is called for smaller legal inputs only, whose traits the given one has, too; if
-    it answers False to everything, as when a budget is spent, the search ends soon.
+    A step leaves out segments or points (half of them, a quarter, ... one), moves all points to the origin, scales
+    them, or rounds coordinates, all or one. ``still`` is called for smaller legal inputs only, whose traits the given
+    one has, too; if it answers False to everything, as when a budget is spent, the search ends soon.
     """
     best = given
 
@@ -84,11 +87,22 @@ def _moved(given: Given) -> Iterator[Given]:
     with np.errstate(all="ignore"):
         for shift in (given.points.min(axis=0), given.points[0]) if len(given.points) else ():
             yield from _finite(given, given.points - shift)
+        for scaled in _scaled(given.points):
+            yield from _finite(given, np.round(scaled) + 0.0)
+            yield from _finite(given, scaled)
         for digits in _DIGITS:
             yield from _finite(given, np.round(given.points, digits) + 0.0)
 
 
-def _finite(given: Given, points: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Iterator[Given]:
+def _scaled(points: FloatArray) -> Iterator[FloatArray]:
+    """Yield the points times a power of two, so that the largest coordinate is of everyday size."""
+    exponent = int(np.frexp(np.abs(points).max(initial=0.0))[1])
+    for wanted in _EXPONENTS:
+        if exponent != wanted:
+            yield np.ldexp(points, wanted - exponent)
+
+
+def _finite(given: Given, points: FloatArray) -> Iterator[Given]:
     if np.isfinite(points).all():
         yield Given(points, given.segments)
 
@@ -107,4 +121,8 @@ def _simplify(given: Given, v: int, axis: int, accept: Callable[[Given], bool]) 
 def _simpler(value: float) -> Iterator[float]:
     yield 0.0
     yield from (1.0, -1.0)
+    leading, _, exponent = f"{value:.0e}".partition("e")
+    most = abs(int(exponent))
+    tamer = sorted({power for power in (*_POWERS, most // 2) if power < most})
+    yield from (float(f"{leading}e{exponent[0]}{power}") for power in tamer)
     yield from (float(f"{value:.{digits}g}") for digits in range(1, 17))

@@ -1,6 +1,7 @@
 """How a mesher is named, so that another process can import it."""
 
 import base64
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +23,7 @@ def resolved(mesher: Mesher, task: Task) -> tuple[str, Known | None]:
     """Return "module:function" or "file.py:function", and what is known of the mesher.
 
     Raises:
-        MesherError: no name leads to it, or a known mesher does not do the task.
+        MesherError: no name leads to it, or a known mesher does not do the task, or is not installed.
     """
     if not isinstance(mesher, str):
         return reference_of(mesher), None
@@ -30,9 +31,12 @@ def resolved(mesher: Mesher, task: Task) -> tuple[str, Known | None]:
         return mesher, None
     known = KNOWN.get(mesher)
     if known is None:
-        raise MesherError(f"{mesher!r} is neither module:function nor a known mesher: {', '.join(KNOWN)}")
+        meant = f"; did you mean {mesher}:FUNCTION?" if "." in mesher or os.sep in mesher else ""
+        raise MesherError(f"{mesher!r} is neither module:function nor a known mesher: {', '.join(KNOWN)}{meant}")
     if task not in known.functions:
         raise MesherError(f"{mesher} is known for {', '.join(known.functions)}, not for {task}")
+    if not known.is_installed:
+        raise MesherError(f"{known.title} is not installed: pip install {known.package}")
     return f"{_MESHERS}:{known.functions[task]}", known
 
 

@@ -26,11 +26,11 @@ def print_result(result: Conformance, console: Console) -> None:
     table.add_column("law", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
     table.add_column("inputs", justify="right", no_wrap=True)
-    table.add_column("what breaks it")
+    table.add_column("what breaks it", overflow="fold")
     for law, ruling in result.rulings.items():
         example = ruling.counterexample
         verdict = f"[{_COLOURS[ruling.outcome]}]{ruling.outcome}[/]"
-        table.add_row(str(law), verdict, str(ruling.judged), "" if example is None else _cut(example.sentence))
+        table.add_row(str(law), verdict, str(ruling.judged), "" if example is None else example.sentence)
     console.print(table)
     for laws, example in _examples(result):
         _print_raw(console, f"\n# {', '.join(laws)}: {example.sentence}")
@@ -44,10 +44,6 @@ def print_result(result: Conformance, console: Console) -> None:
 def _print_raw(console: Console, text: str) -> None:
     """Print as it is, without breaking lines that are to be copied."""
     console.print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-def _cut(sentence: str) -> str:
-    return sentence if len(sentence) <= 100 else f"{sentence[:97]}..."
 
 
 def _examples(result: Conformance) -> Iterator[tuple[list[str], Counterexample]]:
