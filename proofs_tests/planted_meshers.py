@@ -65,12 +65,15 @@ def float_predicates(points: Floats) -> list[Triangle]:
 def flips_what_doubles_resolve(points: Floats) -> list[Triangle]:
     """An error bound where there should be exact arithmetic: a tolerance."""
 
-    def filtered(a: Point, b: Point, c: Point, d: Point) -> int:
-        determinant = in_circle(a, b, c, d)
+    def permanent(a: Point, b: Point, c: Point, d: Point) -> int:
         rows = [(abs(p[0] - d[0]), abs(p[1] - d[1])) for p in (a, b, c)]
         turned = zip(rows, rows[1:] + rows[:1], rows[2:] + rows[:2], strict=True)
-        permanent = sum((x * x + y * y) * (px * qy + py * qx) for (x, y), (px, py), (qx, qy) in turned)
-        return determinant if determinant << 51 > permanent else 0
+        return sum((x * x + y * y) * (px * qy + py * qx) for (x, y), (px, py), (qx, qy) in turned)
+
+    def filtered(a: Point, b: Point, c: Point, d: Point) -> int:
+        determinant = in_circle(a, b, c, d)
+        turns = ((a, b, c, d), (b, c, d, a), (c, d, a, b), (d, a, b, c))  # whichever the origin is moved to
+        return determinant if determinant << 51 > min(permanent(*turn) for turn in turns) else 0
 
     return mesh(points.tolist(), inside=filtered)
 
