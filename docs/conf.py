@@ -18,6 +18,8 @@ autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike", "FloatArray": "FloatArray"
 napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
+#: An attribute's name is looked for in all classes; that several have one of that name is no fault.
+suppress_warnings = ["ref.python"]
 
 html_theme = "furo"
 html_title = "exactmesh"
