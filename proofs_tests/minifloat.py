@@ -85,7 +85,7 @@ def _rounded_float(x: float, precision: int) -> float:
     return rounded
 
 
-def _kept_integer(x: float, precision: int) -> float:  # noqa: ARG001
+def _kept_integer(x: float, precision: int) -> float:  # noqa: ARG001  # called as _rounded_float is
     return x
 
 
@@ -94,7 +94,7 @@ def _is_float_type(numba_type: object) -> bool:
 
 
 @overload(_rounded)
-def _rounded_overload(x: float, precision: int) -> Callable[[float, int], float]:  # noqa: ARG001
+def _rounded_overload(x: float, precision: int) -> Callable[[float, int], float]:  # noqa: ARG001  # numba's rule
     return _rounded_float if _is_float_type(x) else _kept_integer
 
 

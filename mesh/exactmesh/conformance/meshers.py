@@ -2,7 +2,7 @@
 
 Loaded as a file by the mesher's own process, so that only the mesher's package has to be imported there.
 """
-# ruff: noqa: D103
+# ruff: noqa: D103  # the name of each function says all: the mesher, and the task
 
 from functools import cache
 from typing import Any
