@@ -3,13 +3,16 @@
 import os
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 from exactkernel.jit import COMPILED
 
 _patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 settings.register_profile("suite", _patient, max_examples=300, derandomize=True)
 settings.register_profile("interpreted", _patient, max_examples=150, derandomize=True)
+settings.register_profile(
+    "mutation", _patient, max_examples=150, derandomize=True, phases=[Phase.explicit, Phase.generate], database=None
+)
 settings.register_profile("deep", _patient, max_examples=20000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite" if COMPILED else "interpreted"))
 

@@ -1,0 +1,91 @@
+"""The command: which mutants, where the results go, and whether enough of them were killed."""
+
+import importlib
+import random
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from proofs_tests.mutation.campaign import Result, campaign, read_results
+from proofs_tests.mutation.covering import Covering
+from proofs_tests.mutation.mutants import mutants_of, source_files
+from proofs_tests.mutation.survivors import Survivors, described, page
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+__all__ = ["main"]
+
+BAR = 0.95
+
+#: Imported before the workers fork, once for all mutants.
+_LIBRARIES = (
+    "numpy",
+    "numba",
+    "gmpy2",
+    "hypothesis",
+    "pytest",
+    "scipy.spatial",
+    "shapely",
+    "matplotlib.pyplot",
+    "rich",
+)
+
+
+def _run(
+    times: Annotated[Path, typer.Option(help="what pytest wrote with --junitxml")],
+    coverage: Annotated[Path, typer.Option(help="what coverage recorded, combined")] = Path(".coverage"),
+    results: Annotated[Path, typer.Option(help="lines of JSON; mutants killed there are not tried again")] = Path(
+        "mutants.jsonl"
+    ),
+    sample: Annotated[int | None, typer.Option(help="try so many, drawn by chance")] = None,
+    seed: Annotated[str, typer.Option(help="of the sample")] = "",
+    only: Annotated[str, typer.Option(help="only files whose path contains this")] = "",
+    processes: Annotated[int, typer.Option(min=1)] = 2,
+    page_file: Annotated[Path | None, typer.Option("--page", help="write the page of docs/ there")] = None,
+) -> None:
+    """Mutate, test, and tell what survived; exit code 1 below 95 percent."""
+    mutants = [mutant for file in source_files() if only in file for mutant in mutants_of(file)]
+    if sample is not None:
+        mutants = random.Random(seed).sample(mutants, min(sample, len(mutants)))
+    earlier = read_results(results)
+    found = {mutant: earlier[mutant] for mutant in mutants if mutant in earlier and not earlier[mutant].alive}
+    for library in _LIBRARIES:
+        importlib.import_module(library)
+    covering = Covering.recorded(coverage, times, source_files())
+    columns = (
+        TextColumn("mutants"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.description}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns) as progress, results.open("a", encoding="utf-8") as lines:
+        alive = sum(result.alive for result in found.values())
+        task = progress.add_task(f"{alive} alive", total=len(mutants), completed=len(found))
+        for result in campaign([mutant for mutant in mutants if mutant not in found], covering, processes):
+            found[result.mutant] = result
+            print(result.line(), file=lines, flush=True)
+            alive += result.alive
+            progress.update(task, advance=1, description=f"{alive} alive")
+    _tell(list(found.values()), page_file)
+
+
+def _tell(results: list[Result], page_file: Path | None) -> None:
+    """Print the score and what survived; leave with exit code 1 below the bar."""
+    survivors = Survivors.listed()
+    if page_file is not None:
+        page_file.write_text(page(results, survivors), encoding="utf-8")
+    alive = [result for result in results if result.alive]
+    unexplained = survivors.unexplained(results)
+    for result in unexplained:
+        print(f"{result.outcome}: {result.mutant.file}:{result.mutant.line} {described(result.mutant)}")
+    explained = len(alive) - len(unexplained)
+    print(f"{len(results)} mutants: {len(results) - len(alive)} killed, {explained} known to be equivalent, ", end="")
+    print(f"{len(unexplained)} survived")
+    score = 1.0 - len(unexplained) / max(len(results) - explained, 1)
+    print(f"score {score:.1%}; the bar is {BAR:.0%}")
+    raise typer.Exit(score < BAR)
+
+
+def main() -> None:
+    """Run the command."""
+    typer.run(_run)
