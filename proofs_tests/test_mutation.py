@@ -1,0 +1,149 @@
+"""The mutants, and how they are tried."""
+
+import importlib.util
+import types
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("cosmic_ray", reason="mutation testing needs cosmic-ray: pip install '.[mutation]'")
+
+from proofs_tests.mutation.covering import Covering
+from proofs_tests.mutation.mutants import ROOT, Mutant, mutants_of, source_files
+from proofs_tests.mutation.survivors import Survivors, described
+from proofs_tests.mutation.transplant import transplant
+
+ORIGINAL = """
+import functools
+
+SCALE = 2
+
+
+def plain(x, by=1):
+    return x + by * SCALE
+
+
+@functools.cache
+def cached():
+    return 1
+
+
+class Box:
+    side = 3
+
+    def area(self):
+        return [self.side * k for k in (1, 2)][0] * self.side
+
+    @property
+    def half(self):
+        return self.side / 2
+
+    @classmethod
+    def made(cls):
+        return cls().side + 1
+"""
+
+
+def _imported(tmp_path: Path) -> types.ModuleType:
+    path = tmp_path / "original.py"
+    path.write_text(ORIGINAL, encoding="utf-8")
+    spec = importlib.util.spec_from_file_location("original", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.obligation("X1", "a mutant is put into a running process just as importing it would")
+class TestTransplant:
+    """A change inside of functions is exchanged where the functions live; any other change is refused."""
+
+    @pytest.mark.parametrize(
+        ("old", "new", "value"),
+        [
+            ("x + by", "x - by", lambda m: m.plain(5)),
+            ("return 1", "return 2", lambda m: m.cached()),
+            ("* self.side", "+ self.side", lambda m: m.Box().area()),
+            ("self.side * k", "self.side - k", lambda m: m.Box().area()),
+            ("self.side / 2", "self.side * 2", lambda m: m.Box().half),
+            ("side + 1", "side - 1", lambda m: m.Box.made()),
+        ],
+    )
+    def test_functions_are_exchanged(self, tmp_path: Path, old: str, new: str, value: "types.FunctionType") -> None:
+        module = _imported(tmp_path)
+        mutated = ORIGINAL.replace(old, new)
+        fresh: dict[str, object] = {"__name__": "fresh"}
+        exec(mutated, fresh)
+        expected, before = value(types.SimpleNamespace(**fresh)), value(_imported(tmp_path))
+        assert transplant(module, ORIGINAL, mutated)
+        assert value(module) == expected != before
+
+    @pytest.mark.parametrize(
+        ("old", "new"),
+        [("SCALE = 2", "SCALE = 3"), ("by=1", "by=2"), ("side = 3", "side = 4"), ("    @property\n", "")],
+    )
+    def test_anything_else_is_refused(self, tmp_path: Path, old: str, new: str) -> None:
+        module = _imported(tmp_path)
+        assert not transplant(module, ORIGINAL, ORIGINAL.replace(old, new))
+        assert (module.plain(5), module.Box().area()) == (7, 9)
+
+    def test_the_original_is_no_mutant(self, tmp_path: Path) -> None:
+        assert not transplant(_imported(tmp_path), ORIGINAL, ORIGINAL)
+
+
+@pytest.mark.obligation("X1", "each mutant is another program, and none is one that no test can see")
+class TestMutants:
+    """Each mutant parses, differs from the original in one line, and is none of what never runs."""
+
+    def test_each_changes_one_line(self) -> None:
+        mutants = list(mutants_of("kernel/exactkernel/coordinates.py"))
+        original = (ROOT / mutants[0].file).read_text(encoding="utf-8").splitlines()
+        sources = {mutant: mutant.source() for mutant in mutants}
+        assert len(set(sources.values())) == len(mutants) > 25
+        for mutant, source in sources.items():
+            compile(source, mutant.file, "exec")
+            lines = source.splitlines()
+            changed = [i for i, (a, b) in enumerate(zip(original, lines, strict=False), start=1) if a != b]
+            assert changed == [mutant.line] or (changed[0] == mutant.line and len(lines) < len(original))
+
+    def test_annotations_and_compiling_decorators_are_left_alone(self) -> None:
+        for mutant in mutants_of("kernel/exactkernel/orient2d.py"):
+            assert not mutant.before.startswith("@jit")
+
+    def test_the_files_are_those_that_the_proofs_stand_on(self) -> None:
+        files = source_files()
+        assert {"kernel/exactkernel/incircle.py", "mesh/exactmesh/quadedge.py", "mesh/exactmesh/lawson.py"} <= {*files}
+        assert all((ROOT / file).exists() for file in files)
+
+    def test_control_a_listed_survivor_is_a_mutant_of_today(self) -> None:
+        """A survivor that is listed, but that no change of today's source yields, is found."""
+        today = {described(mutant) for file in source_files() for mutant in mutants_of(file) if _mentioned(mutant)}
+        stale = {listed for listed in Survivors.listed().reasons if listed not in today}
+        assert not stale
+
+
+def _mentioned(mutant: Mutant) -> bool:
+    """Tell whether some listed survivor has the same line: the others need not be made."""
+    return any(f": {mutant.before} -> " in listed for listed in Survivors.listed().reasons)
+
+
+@pytest.mark.obligation("X1", "the tests of a mutant are those that run its line")
+class TestCovering:
+    """A line's tests, those of a fixture's file, and for lines that run on import all tests of the file."""
+
+    mutant = Mutant("kernel/exactkernel/types.py", "AddNot", 0, 7, "f", "if x:")
+
+    def test_tests_of_the_line(self) -> None:
+        lines = {self.mutant.file: {7: ["a/test_b.py::test_1", "a/test_c.py"], 8: ["a/test_b.py::test_2"]}}
+        seconds = {"a/test_b.py::test_1": 2.0, "a/test_b.py::test_2": 1.0, "a/test_c.py::T::test_3": 0.5}
+        covering = Covering(lines, seconds)
+        assert covering.tests(self.mutant) == ["a/test_c.py::T::test_3", "a/test_b.py::test_1"]
+
+    def test_lines_that_run_on_import(self) -> None:
+        lines = {self.mutant.file: {7: [""], 8: ["a/test_b.py::test_2"]}}
+        covering = Covering(lines, {"a/test_b.py::test_1": 2.0, "a/test_b.py::test_2": 1.0})
+        assert covering.tests(self.mutant) == ["a/test_b.py::test_2"]
+
+    def test_no_test(self) -> None:
+        assert Covering({}, {"a/test_b.py::test_1": 1.0}).tests(self.mutant) == []
