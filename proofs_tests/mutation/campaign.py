@@ -20,7 +20,7 @@ from proofs_tests.mutation.trial import try_mutants
 
 __all__ = ["Result", "campaign", "read_results"]
 
-_CHUNK = 60
+_CHUNK = 150
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def read_results(path: Path) -> dict[Mutant, Result]:
     return results
 
 
-def campaign(mutants: Sequence[Mutant], covering: Covering, processes: int) -> Iterator[Result]:
+def campaign(mutants: Sequence[Mutant], covering: Covering, budget: float, processes: int) -> Iterator[Result]:
     """Yield the results as they come."""
     forking = multiprocessing.get_context("fork")  # the workers have imported what takes long to import
     chunks: Queue[list[Mutant] | None] = forking.Queue()
@@ -63,7 +63,7 @@ def campaign(mutants: Sequence[Mutant], covering: Covering, processes: int) -> I
         for number in range(processes):
             chunks.put(None)
             tree = _copied(Path(folder) / str(number))
-            workers.append(forking.Process(target=_work, args=(tree, covering, chunks, results)))
+            workers.append(forking.Process(target=_work, args=(tree, covering, budget, chunks, results)))
             workers[-1].start()
         for _ in mutants:
             result = results.get()
@@ -95,13 +95,15 @@ def _copied(tree: Path) -> Path:
     return tree
 
 
-def _work(tree: Path, covering: Covering, chunks: "Queue[list[Mutant] | None]", results: "Queue[Result | str]") -> None:
+def _work(
+    tree: Path, covering: Covering, budget: float, chunks: "Queue[list[Mutant] | None]", results: "Queue[Result | str]"
+) -> None:
     sys.dont_write_bytecode = True
     os.chdir(tree)
     while chunk := chunks.get():
         tests = {mutant: covering.tests(mutant) for mutant in chunk}
         try:
-            for mutant, (outcome, test) in try_mutants(tree, chunk, tests, covering.seconds):
+            for mutant, (outcome, test) in try_mutants(tree, chunk, tests, covering.seconds, budget):
                 results.put(Result(mutant, outcome, test))
         except RuntimeError as error:
             results.put(str(error))

@@ -31,19 +31,20 @@ _LIBRARIES = (
 
 
 def _run(
-    times: Annotated[Path, typer.Option(help="what pytest wrote with --junitxml")],
+    times: Annotated[list[Path], typer.Option(help="what pytest wrote with --junitxml")],
     coverage: Annotated[Path, typer.Option(help="what coverage recorded, combined")] = Path(".coverage"),
     results: Annotated[Path, typer.Option(help="lines of JSON; mutants killed there are not tried again")] = Path(
         "mutants.jsonl"
     ),
     sample: Annotated[int | None, typer.Option(help="try so many, drawn by chance")] = None,
     seed: Annotated[str, typer.Option(help="of the sample")] = "",
-    only: Annotated[str, typer.Option(help="only files whose path contains this")] = "",
+    only: Annotated[list[str] | None, typer.Option(help="only files whose path contains one of these")] = None,
+    budget: Annotated[float, typer.Option(help="seconds of tests that a mutant is worth")] = 60.0,
     processes: Annotated[int, typer.Option(min=1)] = 2,
     page_file: Annotated[Path | None, typer.Option("--page", help="write the page of docs/ there")] = None,
 ) -> None:
     """Mutate, test, and tell what survived; exit code 1 below 95 percent."""
-    mutants = [mutant for file in source_files() if only in file for mutant in mutants_of(file)]
+    mutants = [mutant for file in source_files() if _chosen(file, only) for mutant in mutants_of(file)]
     if sample is not None:
         mutants = random.Random(seed).sample(mutants, min(sample, len(mutants)))
     earlier = read_results(results)
@@ -61,12 +62,16 @@ def _run(
     with Progress(*columns) as progress, results.open("a", encoding="utf-8") as lines:
         alive = sum(result.alive for result in found.values())
         task = progress.add_task(f"{alive} alive", total=len(mutants), completed=len(found))
-        for result in campaign([mutant for mutant in mutants if mutant not in found], covering, processes):
+        for result in campaign([mutant for mutant in mutants if mutant not in found], covering, budget, processes):
             found[result.mutant] = result
             print(result.line(), file=lines, flush=True)
             alive += result.alive
             progress.update(task, advance=1, description=f"{alive} alive")
     _tell(list(found.values()), page_file)
+
+
+def _chosen(file: str, parts: list[str] | None) -> bool:
+    return not parts or any(part in file for part in parts)
 
 
 def _tell(results: list[Result], page_file: Path | None) -> None:

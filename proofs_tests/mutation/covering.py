@@ -19,13 +19,13 @@ class Covering:
     seconds: Mapping[str, float]
 
     @classmethod
-    def recorded(cls, coverage: Path, times: Path, files: Sequence[str]) -> "Covering":
-        """Read coverage's data, whose contexts are tests, and pytest's report in JUnit's XML."""
+    def recorded(cls, coverage: Path, times: Sequence[Path], files: Sequence[str]) -> "Covering":
+        """Read coverage's data, whose contexts are tests, and pytest's reports in JUnit's XML."""
         data = CoverageData(str(coverage))
         data.read()
         paths = {file: path for path in data.measured_files() for file in files if path.endswith(f"/{file}")}
         lines = {file: data.contexts_by_lineno(path) for file, path in paths.items()}
-        cases = ElementTree.parse(times).iter("testcase")
+        cases = [case for path in times for case in ElementTree.parse(path).iter("testcase")]
         return cls(lines, {_node(case): float(case.attrib["time"]) for case in cases})
 
     def tests(self, mutant: Mutant) -> list[str]:

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 _BINARY = {
     "Add": ["Sub"], "Sub": ["Add"], "Mul": ["Add"], "Div": ["Mul"], "FloorDiv": ["Mul"], "Mod": ["FloorDiv"],
     "Pow": ["Mul"], "LShift": ["RShift"], "RShift": ["LShift"], "BitAnd": ["BitOr"], "BitOr": ["BitAnd"],
-    "BitXor": ["BitOr"],
+    "BitXor": ["BitAnd"],
 }  # fmt: skip
 _COMPARISON = {
     "Lt": ["LtE", "GtE"], "LtE": ["Lt", "Gt"], "Gt": ["GtE", "LtE"], "GtE": ["Gt", "Lt"], "Eq": ["NotEq"],

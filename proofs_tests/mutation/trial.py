@@ -4,13 +4,16 @@ A process that has imported the libraries, but nothing of ours, forks one that c
 for each mutant. A mutant that is no change of functions alone is imported anew by a fork of the first.
 """
 
+import bisect
 import contextlib
 import importlib
+import itertools
 import json
 import os
 import resource
 import signal
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -133,16 +136,22 @@ def _module(mutant: Mutant) -> str:
 
 
 def try_mutants(
-    tree: Path, mutants: Sequence[Mutant], tests: Mapping[Mutant, Sequence[str]], seconds: Mapping[str, float]
+    tree: Path,
+    mutants: Sequence[Mutant],
+    tests: Mapping[Mutant, Sequence[str]],
+    seconds: Mapping[str, float],
+    budget: float,
 ) -> Iterator[tuple[Mutant, Outcome]]:
     """Yield each mutant and what became of it; ``tree`` is a copy of ours that may be written.
 
-    A test counts as a killer only if it passes without the mutant, in the same way of running it.
+    A mutant that outlives tests worth ``budget`` seconds is a survivor. A test counts as a killer only if it passes
+    without the mutant, in the same way of running it.
     """
     covered = [mutant for mutant in mutants if tests[mutant]]
     yield from ((mutant, ("uncovered", "")) for mutant in mutants if not tests[mutant])
     imported = []
-    for number, outcome in _in_one_process(tree, covered, tests, seconds):
+    order = _Order(seconds, budget)
+    for number, outcome in _in_one_process(tree, covered, tests, order):
         if outcome[0] == _NOT_A_FUNCTION:
             imported.append(covered[number])
         else:
@@ -150,8 +159,23 @@ def try_mutants(
     healthy = _Healthy(lambda test: _forked(lambda: _import_and_try(tree, [test], seconds)))
     for mutant in imported:
         with _written(tree, mutant):
-            outcome = _forked(lambda mutant=mutant: _import_and_try(tree, tests[mutant], seconds))  # type: ignore[misc]  # mypy infers no default
+            names = order.best(tests[mutant])
+            outcome = _forked(lambda names=names: _import_and_try(tree, names, seconds))  # type: ignore[misc]  # mypy infers no default
         yield mutant, healthy.judged(outcome)
+
+
+class _Order:
+    """The tests to run: those that killed others of the file before, then as given; as many as the budget pays for."""
+
+    def __init__(self, seconds: Mapping[str, float], budget: float) -> None:
+        self.seconds, self.budget = seconds, budget
+        self.kills = Counter[str]()
+
+    def best(self, tests: Sequence[str]) -> list[str]:
+        """Return the tests for a mutant."""
+        ordered = sorted(tests, key=lambda test: -self.kills[test] / (self.seconds[test] + 0.05))
+        spent = list(itertools.accumulate(self.seconds[test] for test in ordered))
+        return ordered[: max(1, bisect.bisect_right(spent, self.budget))]
 
 
 class _Healthy:
@@ -170,7 +194,7 @@ class _Healthy:
 
 
 def _in_one_process(
-    tree: Path, mutants: Sequence[Mutant], tests: Mapping[Mutant, Sequence[str]], seconds: Mapping[str, float]
+    tree: Path, mutants: Sequence[Mutant], tests: Mapping[Mutant, Sequence[str]], order: _Order
 ) -> Iterator[tuple[int, Outcome]]:
     """Yield what became of the mutants that are changes of functions alone, by a process that collects once."""
     if not mutants:
@@ -180,7 +204,7 @@ def _in_one_process(
     if child == 0:
         os.close(reading)
         try:
-            _collect_and_try(tree, mutants, tests, seconds, writing)
+            _collect_and_try(tree, mutants, tests, order, writing)
         finally:
             os._exit(4)
     os.close(writing)
@@ -207,7 +231,7 @@ def _collect_and_try(
     tree: Path,
     mutants: Sequence[Mutant],
     tests: Mapping[Mutant, Sequence[str]],
-    seconds: Mapping[str, float],
+    order: _Order,
     pipe: int,
 ) -> None:
     def loop(session: _Session, items: Sequence[pytest.Item]) -> None:
@@ -218,10 +242,11 @@ def _collect_and_try(
                 def action(mutant: Mutant = mutant, texts: tuple[str, str] = texts) -> None:
                     if not transplant(importlib.import_module(_module(mutant)), *texts):
                         _end(_NOT_A_FUNCTION, "")
-                    session.run(_by_name(items, tests[mutant]))
+                    session.run(_by_name(items, order.best(tests[mutant])))
 
                 outcome = _forked(action)
+                order.kills[outcome[1]] += 1
             os.write(pipe, json.dumps([number, *healthy.judged(outcome)]).encode() + b"\n")
         os._exit(0)
 
-    _pytest(tree, _Session(seconds, loop), sorted({test for mutant in mutants for test in tests[mutant]}))
+    _pytest(tree, _Session(order.seconds, loop), sorted({test for mutant in mutants for test in tests[mutant]}))
