@@ -6,6 +6,7 @@ for each mutant. A mutant that is no change of functions alone is imported anew 
 
 import bisect
 import contextlib
+import functools
 import importlib
 import itertools
 import json
@@ -28,6 +29,7 @@ Outcome = tuple[str, str]  # "killed", "timeout", "survived", "uncovered"; and t
 _SURVIVED, _NOT_A_FUNCTION = "survived", "not a function"
 _MEMORY = 8 << 30
 _SLOWEST = 120.0
+_terminal = os.dup(2)  # pytest's own output goes nowhere
 
 
 class _Session:
@@ -158,10 +160,7 @@ def try_mutants(
             yield covered[number], outcome
     healthy = _Healthy(lambda test: _forked(lambda: _import_and_try(tree, [test], seconds)))
     for mutant in imported:
-        with _written(tree, mutant):
-            names = order.best(tests[mutant])
-            outcome = _forked(lambda names=names: _import_and_try(tree, names, seconds))  # type: ignore[misc]  # mypy infers no default
-        yield mutant, healthy.judged(outcome)
+        yield mutant, healthy.outcome(functools.partial(_imported, tree, mutant, seconds), order.best(tests[mutant]))
 
 
 class _Order:
@@ -179,18 +178,21 @@ class _Order:
 
 
 class _Healthy:
-    """Makes sure of the tests that kill: each is run once without a mutant."""
+    """Makes sure of the tests that kill: each is run once without a mutant, and left out if it fails there too."""
 
     def __init__(self, run: Callable[[str], Outcome]) -> None:
-        self.run, self.known = run, {"import"}
+        self.run, self.known, self.broken = run, {"import", ""}, set[str]()
 
-    def judged(self, outcome: Outcome) -> Outcome:
-        test = outcome[1]
-        if outcome[0] in ("killed", "timeout") and test not in self.known:
-            if self.run(test)[0] != _SURVIVED:
-                raise RuntimeError(f"{test} fails without a mutant")
-            self.known.add(test)
-        return outcome
+    def outcome(self, attempt: Callable[[Sequence[str]], Outcome], tests: Sequence[str]) -> Outcome:
+        """Try a mutant until no test that fails anyway has the last word."""
+        while True:
+            outcome = attempt([test for test in tests if test not in self.broken])
+            test = outcome[1]
+            if test in self.known or self.run(test)[0] == _SURVIVED:
+                self.known.add(test)
+                return outcome
+            self.broken.add(test)
+            os.write(_terminal, f"left out, since it fails without a mutant: {test}\n".encode())
 
 
 def _in_one_process(
@@ -222,9 +224,26 @@ def _by_name(items: Sequence[pytest.Item], names: Sequence[str]) -> list[pytest.
     return [named[name] for name in names if name in named]
 
 
+def _imported(tree: Path, mutant: Mutant, seconds: Mapping[str, float], tests: Sequence[str]) -> Outcome:
+    with _written(tree, mutant):
+        return _forked(lambda: _import_and_try(tree, tests, seconds))
+
+
 def _import_and_try(tree: Path, names: Sequence[str], seconds: Mapping[str, float]) -> None:
     _pytest(tree, _Session(seconds, lambda session, items: session.run(_by_name(items, names))), names)
     _end("killed", "import")
+
+
+def _transplanted(
+    session: _Session, tree: Path, mutant: Mutant, items: Sequence[pytest.Item], tests: Sequence[str]
+) -> Outcome:
+    def action() -> None:
+        if not transplant(importlib.import_module(_module(mutant)), *texts):
+            _end(_NOT_A_FUNCTION, "")
+        session.run(_by_name(items, tests))
+
+    with _written(tree, mutant) as texts:
+        return _forked(action)
 
 
 def _collect_and_try(
@@ -237,16 +256,10 @@ def _collect_and_try(
     def loop(session: _Session, items: Sequence[pytest.Item]) -> None:
         healthy = _Healthy(lambda test: _forked(lambda: session.run(_by_name(items, [test]))))
         for number, mutant in enumerate(mutants):
-            with _written(tree, mutant) as texts:
-
-                def action(mutant: Mutant = mutant, texts: tuple[str, str] = texts) -> None:
-                    if not transplant(importlib.import_module(_module(mutant)), *texts):
-                        _end(_NOT_A_FUNCTION, "")
-                    session.run(_by_name(items, order.best(tests[mutant])))
-
-                outcome = _forked(action)
-                order.kills[outcome[1]] += 1
-            os.write(pipe, json.dumps([number, *healthy.judged(outcome)]).encode() + b"\n")
+            attempt = functools.partial(_transplanted, session, tree, mutant, items)
+            outcome = healthy.outcome(attempt, order.best(tests[mutant]))
+            order.kills[outcome[1]] += 1
+            os.write(pipe, json.dumps([number, *outcome]).encode() + b"\n")
         os._exit(0)
 
     _pytest(tree, _Session(order.seconds, loop), sorted({test for mutant in mutants for test in tests[mutant]}))
