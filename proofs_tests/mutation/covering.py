@@ -1,6 +1,7 @@
 """Which tests can see a mutant: those that run its line, the quickest first."""
 
 import xml.etree.ElementTree as ElementTree
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,8 +24,11 @@ class Covering:
         """Read coverage's data, whose contexts are tests, and pytest's reports in JUnit's XML."""
         data = CoverageData(str(coverage))
         data.read()
-        paths = {file: path for path in data.measured_files() for file in files if path.endswith(f"/{file}")}
-        lines = {file: data.contexts_by_lineno(path) for file, path in paths.items()}
+        lines: dict[str, dict[int, list[str]]] = {file: defaultdict(list) for file in files}
+        for path in data.measured_files():
+            for file in (file for file in files if path.endswith(f"/{file}")):
+                for line, contexts in data.contexts_by_lineno(path).items():
+                    lines[file][line] += contexts
         cases = [case for path in times for case in ElementTree.parse(path).iter("testcase")]
         return cls(lines, {_node(case): float(case.attrib["time"]) for case in cases})
 

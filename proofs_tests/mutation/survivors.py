@@ -1,4 +1,4 @@
-"""The mutants that no test can kill, and why: read from survivors.toml, which people write."""
+"""The mutants that no test can kill, and why: read from survivors/*.toml, which people write."""
 
 import tomllib
 from collections import Counter
@@ -11,7 +11,7 @@ from proofs_tests.mutation.mutants import Mutant
 
 __all__ = ["Survivors", "described", "page"]
 
-FILE = Path(__file__).with_name("survivors.toml")
+FOLDER = Path(__file__).with_name("survivors")
 
 
 def described(mutant: Mutant) -> str:
@@ -27,9 +27,10 @@ class Survivors:
     reasons: dict[str, str]
 
     @classmethod
-    def listed(cls, path: Path = FILE) -> "Survivors":
-        """Read the list: tables [[equivalent]] with a reason and mutants, as ``described`` writes them."""
-        groups = tomllib.loads(path.read_text(encoding="utf-8"))["equivalent"]
+    def listed(cls, folder: Path = FOLDER) -> "Survivors":
+        """Read the lists: tables [[equivalent]] with a reason and mutants, as ``described`` writes them."""
+        texts = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.toml"))]
+        groups = [group for text in texts for group in tomllib.loads(text)["equivalent"]]
         return cls({mutant: group["reason"] for group in groups for mutant in group["mutants"]})
 
     def unexplained(self, results: Iterable[Result]) -> list[Result]:
