@@ -1,7 +1,4 @@
-"""The table of obligations: what is proved or tested, and where.
-
-python -m proofs_tests.obligations > docs/obligations.md
-"""
+"""The markers, read out of the sources of the tests."""
 
 import ast
 import re
@@ -9,9 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from proofs_tests.obligations.method import Method
+
 __all__ = ["Obligation", "collect", "table"]
 
-HERE = Path(__file__).resolve().parent
+HERE = Path(__file__).resolve().parent.parent
 ROOT = HERE.parent
 
 
@@ -25,6 +24,7 @@ class Obligation:
     name: str
     line: int
     controls: int
+    method: Method | None
 
     @classmethod
     def of(cls, node: ast.ClassDef | ast.FunctionDef, call: ast.Call, path: Path) -> "Obligation":
@@ -32,7 +32,9 @@ class Obligation:
         letters, digits = re.fullmatch(r"([A-Z]+)(\d+)", identifier).groups()  # type: ignore[union-attr]  # or fail
         where = path.relative_to(ROOT).as_posix()
         controls = sum(isinstance(inner, ast.FunctionDef) and "control" in inner.name for inner in ast.walk(node))
-        return cls((letters, int(digits)), statement, where, node.name, node.lineno, controls)
+        keywords = {keyword.arg: ast.literal_eval(keyword.value) for keyword in call.keywords}
+        method = Method(keywords["method"]) if "method" in keywords else None
+        return cls((letters, int(digits)), statement, where, node.name, node.lineno, controls, method)
 
 
 def _marker(decorator: ast.expr) -> ast.Call | None:
@@ -43,7 +45,7 @@ def _marker(decorator: ast.expr) -> ast.Call | None:
 
 def collect(folder: Path = HERE) -> list[Obligation]:
     """Return the obligations of all test files, sorted."""
-    return sorted(found for path in sorted(folder.glob("test_*.py")) for found in _of_file(path))
+    return sorted(found for path in sorted(folder.rglob("test_*.py")) for found in _of_file(path))
 
 
 def _of_file(path: Path) -> Iterator[Obligation]:
@@ -69,7 +71,3 @@ def table(obligations: list[Obligation]) -> str:
         f"| {''.join(map(str, o.id))} | {o.statement} | `{o.file}` {o.name} | {o.controls or ''} |" for o in obligations
     ]
     return "\n".join(lines) + "\n"
-
-
-if __name__ == "__main__":
-    print(table(collect()), end="")
