@@ -47,7 +47,11 @@ def same(builder: TriangulationBuilder) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "every sequence of edits ends in the constrained Delaunay triangulation of what is left")
+@pytest.mark.obligation(
+    "M5",
+    "every sequence of edits ends in the constrained Delaunay triangulation of what is left",
+    method="stateful machine",
+)
 class TestEditing:
     """After every step, the builder's triangulation is the one that is built at once from the model's points and
     segments; errors name exactly the segments that the model says, and change nothing."""
@@ -127,7 +131,9 @@ HUBS = dict(hubs())
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "deleting vertices, however many neighbors they have, leaves what the others alone have")
+@pytest.mark.obligation(
+    "M5", "deleting vertices, however many neighbors they have, leaves what the others alone have", method="named cases"
+)
 class TestDeletion:
     """Whatever vertex goes, inside, on the hull or on a straight side of it, the others keep their numbers, and their
     triangulation is theirs alone."""
@@ -188,7 +194,9 @@ def predicates_of_deletion(shape: str, n: int) -> int:
     )
 
 
-@pytest.mark.obligation("M5", "the straight walk ends in the triangle of its target, Delaunay or not, hull or not")
+@pytest.mark.obligation(
+    "M5", "the straight walk ends in the triangle of its target, Delaunay or not, hull or not", method="enumeration"
+)
 class TestStraightWalk:
     """From every vertex, to every point of a fine grid, within the hull and beyond: the closed triangle on the left of
     the edge holds the target, and what is said of edge and vertex is so."""
@@ -234,7 +242,7 @@ class TestStraightWalk:
             assert oracles.orient(exact[v], exact[w], target) > 0 < oracles.orient(exact[w], exact[u], target)
 
 
-@pytest.mark.obligation("M5", "a builder made of a graph or a triangulation holds the same")
+@pytest.mark.obligation("M5", "a builder made of a graph or a triangulation holds the same", method="named cases")
 class TestMaking:
     """Made of a graph, of a triangulation or by steps in any order, it is the same; and what is frozen stays so."""
 

@@ -62,7 +62,9 @@ def is_found(task: Task, name: str, law: str, outcome: str) -> bool:
 
 
 @pytest.mark.compiled  # nothing of it is: once is enough
-@pytest.mark.obligation("B1", "the conformance suite finds every planted fault within its default budget")
+@pytest.mark.obligation(
+    "B1", "the conformance suite finds every planted fault within its default budget", method="named cases"
+)
 class TestPlantedFaults:
     """Law: within its default budget the suite finds the fault of each of thirty faulty meshers, and tells it by its
     name; it finds none in a mesher that has none."""
@@ -86,7 +88,9 @@ class TestPlantedFaults:
 
 
 @pytest.mark.obligation(
-    "B2", "what was found is told as the smallest input, which shows the same when it is tried again"
+    "B2",
+    "what was found is told as the smallest input, which shows the same when it is tried again",
+    method="named cases",
 )
 class TestCounterexamples:
     """Law: of a law that is broken the worst breach is told, by an input from which nothing can be left out, and which,
@@ -164,7 +168,9 @@ def failures(cases: dict[str, Case]) -> list[object]:
     ]
 
 
-@pytest.mark.obligation("B3", "the known failures of other meshers are found; exactmesh has none of them")
+@pytest.mark.obligation(
+    "B3", "the known failures of other meshers are found; exactmesh has none of them", method="named cases"
+)
 class TestCorpus:
     """Law: the verifier finds every failure of the corpus, and none in exactmesh's answers to the same inputs."""
 

@@ -33,7 +33,9 @@ def is_legal(given: Given) -> bool:
     return True
 
 
-@pytest.mark.obligation("B4", "whatever a mesher does to its process, the next input is tried, and this process lives")
+@pytest.mark.obligation(
+    "B4", "whatever a mesher does to its process, the next input is tried, and this process lives", method="named cases"
+)
 class TestWhateverItDoes:
     """Law: a mesher may end its process, crash, hang, raise or eat memory; what it did is told, and it answers the next
     input as if nothing had happened."""

@@ -91,7 +91,9 @@ def segments_of(edges: Iterable[Edge]) -> list[Segment]:
     return [(min(edge), max(edge)) for edge in edges]
 
 
-@pytest.mark.obligation("M5", "constrained flips lead from every constrained triangulation to one: ours")
+@pytest.mark.obligation(
+    "M5", "constrained flips lead from every constrained triangulation to one: ours", method="enumeration"
+)
 @pytest.mark.parametrize("name", SETS)
 class TestOneSink:
     """Flips of edges that are not locally Delaunay lead to triangulations, and never in a circle; whatever edges are
@@ -125,7 +127,11 @@ class TestOneSink:
             assert [constrained_oracle.constrained_triangles(graph.points, segments_of(fixed))] == graph.sinks(fixed)
 
 
-@pytest.mark.obligation("M5", "no vertex in the circle of a triangle sees it past the segments, and so for no other")
+@pytest.mark.obligation(
+    "M5",
+    "no vertex in the circle of a triangle sees it past the segments, and so for no other",
+    method="property-based",
+)
 class TestVisibility:
     """The triangles of the hull are those, over all triples, that no segment cuts and whose perturbed circle contains
     no vertex that they see: for grids, cocircular, collinear and extreme points, overlaps, T-junctions, duplicates."""
@@ -162,7 +168,9 @@ class TestVisibility:
         assert not constrained_oracle.is_visible(points, [frozenset(wall[0])], (0, 1, 4), 5)
 
 
-@pytest.mark.obligation("M5", "every segment is a chain of constrained edges, and nothing else is constrained")
+@pytest.mark.obligation(
+    "M5", "every segment is a chain of constrained edges, and nothing else is constrained", method="property-based"
+)
 class TestSegmentsArePresent:
     """The constrained edges are the pieces into which vertices cut the segments; segment_incidence has one row for each
     piece of each segment; chain(i) leads along segment i from its start to its end."""
@@ -212,7 +220,7 @@ class TestSegmentsArePresent:
             assert len(mesh.segments) == pieces
 
 
-@pytest.mark.obligation("M5", "the result depends on no order and on no seed")
+@pytest.mark.obligation("M5", "the result depends on no order and on no seed", method="enumeration")
 class TestEveryOrder:
     """Any order of points, any order and direction of segments, and any seed give the same triangulation."""
 
@@ -262,7 +270,9 @@ class TestEveryOrder:
         assert ours(places, [(a, b) for a, b in plain.edges.tolist()]) == canonical_triangles(plain.triangles.tolist())
 
 
-@pytest.mark.obligation("M5", "the corpus: near-concurrent segments, split, are constrained Delaunay, and admissible")
+@pytest.mark.obligation(
+    "M5", "the corpus: near-concurrent segments, split, are constrained Delaunay, and admissible", method="named cases"
+)
 class TestCorpus:
     """Number 7 of the corpus of other meshers' failures, and its 150 bundles: of those Triangle fails on 129."""
 
@@ -286,7 +296,9 @@ class TestCorpus:
         assert not verify(mesh.points, mesh.triangles, segments=[(int(mesh.hull[0]), int(mesh.hull[2]))]).ok
 
 
-@pytest.mark.obligation("M5", "segments that cross are refused, whatever the order, and only those")
+@pytest.mark.obligation(
+    "M5", "segments that cross are refused, whatever the order, and only those", method="property-based"
+)
 class TestCrossings:
     """Segments are refused exactly when two of them meet in one point inside both that is no vertex; all these pairs
     are named, and no others."""
@@ -360,7 +372,9 @@ class Pairs:
         return [pair for pair, result in self.expected.items() if self.ours(pair) != result]
 
 
-@pytest.mark.obligation("M5", "any two segments on a grid, or between cocircular points, give what brute force gives")
+@pytest.mark.obligation(
+    "M5", "any two segments on a grid, or between cocircular points, give what brute force gives", method="enumeration"
+)
 @pytest.mark.parametrize("points", [grid(3, 3), grid(2, 4), CIRCLE_OF_EIGHT], ids=["3 x 3", "2 x 4", "octagon"])
 class TestEveryPair:
     """Any two segments: refused exactly when they cross in no vertex, else the triangles and pieces of brute force."""
@@ -399,7 +413,9 @@ FAULTS = {
 }
 
 
-@pytest.mark.obligation("M5", "a constrained insertion with a seeded fault is found by the enumeration")
+@pytest.mark.obligation(
+    "M5", "a constrained insertion with a seeded fault is found by the enumeration", method="mutation"
+)
 class TestFaultsAreFound:
     """The comparison with brute force rejects seeded faults: run in a child process, interpreted."""
 

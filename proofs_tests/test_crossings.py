@@ -35,7 +35,9 @@ def found(
     return [(i, j, kind) for (i, j), kind in zip(pairs.pairs.tolist(), pairs.kinds.tolist(), strict=True)]
 
 
-@pytest.mark.obligation("ARR1", "the pairs of segments that meet, and how, are those of brute force")
+@pytest.mark.obligation(
+    "ARR1", "the pairs of segments that meet, and how, are those of brute force", method="property-based"
+)
 class TestPairs:
     """find_crossings returns exactly the pairs that meet elsewhere than in an end of both, each with its kind."""
 
@@ -81,7 +83,9 @@ class TestPairs:
         assert oracle.true_pairs([(0, 0), (2, 0), (2, 0), (3, 0)], [(0, 1), (2, 3)]) == []
 
 
-@pytest.mark.obligation("ARR2", "a crossing goes to the nearest doubles, or into its own grid cell")
+@pytest.mark.obligation(
+    "ARR2", "a crossing goes to the nearest doubles, or into its own grid cell", method="property-based"
+)
 class TestRounding:
     """What is certified in double-double, and what the rationals decide, is the nearest double and the right cell."""
 
@@ -150,7 +154,9 @@ def faults(a: Arrangement) -> list[str]:
 
 
 @pytest.mark.obligation(
-    "ARR3", "the rounded arrangement is planar, within its stated distance, and noding it changes nothing"
+    "ARR3",
+    "the rounded arrangement is planar, within its stated distance, and noding it changes nothing",
+    method="property-based",
 )
 class TestArrangement:
     """Whatever the segments: the result is planar by brute force; every chain leads along its segment, within half the
@@ -232,7 +238,9 @@ class TestArrangement:
 
 
 @pytest.mark.obligation(
-    "ARR4", "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets"
+    "ARR4",
+    "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets",
+    method="property-based",
 )
 class TestSnapping:
     """Of any drawing: the vertices are the centres of the pixels with a point or a crossing in them, and each chain
@@ -290,7 +298,9 @@ def is_moved(arranged: Arrangement) -> list[bool]:
     return [bool((p != q).any()) for p, q in zip(arranged.pslg.points[: len(given)], given, strict=True)]
 
 
-@pytest.mark.obligation("ARR6", "snapping is local: planar and within its distance, and nothing far from it moves")
+@pytest.mark.obligation(
+    "ARR6", "snapping is local: planar and within its distance, and nothing far from it moves", method="property-based"
+)
 class TestLocality:
     """However few segments are snapped, all are planar together and within their distance; and a point stays that is no
     end of a segment which comes near one that is snapped."""
@@ -339,7 +349,9 @@ class TestLocality:
         assert any(is_moved(arranged)[len(points) :])
 
 
-@pytest.mark.obligation("ARR7", "the neighbourhood that is searched again holds every box that meets a changed one")
+@pytest.mark.obligation(
+    "ARR7", "the neighbourhood that is searched again holds every box that meets a changed one", method="differential"
+)
 class TestNeighbourhood:
     """nearby returns at least those segments whose boxes, widened by the margin, meet one that is given."""
 
@@ -390,7 +402,9 @@ class TestNeighbourhood:
         assert len(nearby.nearby(boxes, np.array([3, 77, 500]))) < 50
 
 
-@pytest.mark.obligation("ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost")
+@pytest.mark.obligation(
+    "ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost", method="named cases"
+)
 class TestBoundary:
     """Faults are named; what would fill the machine is refused; markers, attributes, holes and regions come along."""
 

@@ -71,7 +71,9 @@ def triples(rows: list[list[int]]) -> list[tuple[int, int, int]]:
     return sorted((a, b, c) for a, b, c in rows)
 
 
-@pytest.mark.obligation("M4", "insertion equals brute force on every subset of a 4 x 4 grid, in random orders")
+@pytest.mark.obligation(
+    "M4", "insertion equals brute force on every subset of a 4 x 4 grid, in random orders", method="enumeration"
+)
 class TestAllSubsetsOfAGrid:
     """For every subset of a grid, inserted in a random order, the triangles are those whose perturbed circles are
     empty, found by looking at all triples; subsets of a line are refused."""
@@ -124,7 +126,9 @@ FAULTS = {
 }
 
 
-@pytest.mark.obligation("M4", "an insertion with a seeded fault is found by the comparison with brute force")
+@pytest.mark.obligation(
+    "M4", "an insertion with a seeded fault is found by the comparison with brute force", method="mutation"
+)
 class TestFaultsAreFound:
     """The comparison above rejects an insertion with a seeded fault: run in a child process, interpreted."""
 
@@ -152,7 +156,9 @@ SIX: dict[str, Sequence[Point]] = {
 }
 
 
-@pytest.mark.obligation("M4", "insertion gives the same triangulation in all 720 orders of six points")
+@pytest.mark.obligation(
+    "M4", "insertion gives the same triangulation in all 720 orders of six points", method="enumeration"
+)
 class TestEveryOrder:
     """All 720 orders of insertion of six points give one and the same triangulation."""
 
@@ -176,7 +182,9 @@ def is_collinear(points: list[oracles.RationalPoint]) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles")
+@pytest.mark.obligation(
+    "M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles", method="property-based"
+)
 class TestAnyPoints:
     """For any doubles, duplicates and all: the vertices are the distinct points in the order of the input, the
     triangles those of brute force, and an error says that all points lie on a line just when they do."""
@@ -249,7 +257,9 @@ def euler_holds(mesh: Triangulation) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M4", "the triangulation of many points is the same for every seed and order, and verified")
+@pytest.mark.obligation(
+    "M4", "the triangulation of many points is the same for every seed and order, and verified", method="named cases"
+)
 class TestManyPoints:
     """The same triangulation for every seed and order of many points; the verifier, which shares no code, agrees."""
 
@@ -277,7 +287,7 @@ class TestManyPoints:
         assert not verify(other.points, other.triangles).ok
 
 
-@pytest.mark.obligation("M4", "degenerate input is decided in doubles")
+@pytest.mark.obligation("M4", "degenerate input is decided in doubles", method="named cases")
 class TestStages:
     """The stage that the design names decides each kind of input, so that no degenerate input ends in rationals."""
 

@@ -59,7 +59,9 @@ def rows_near_segments(draw: st.DrawFn) -> list[Row]:
     return rows
 
 
-@pytest.mark.obligation("R1", "the displacement of segments that is reported is the exact maximum")
+@pytest.mark.obligation(
+    "R1", "the displacement of segments that is reported is the exact maximum", method="property-based"
+)
 class TestDisplacement:
     """Law: the answer is the maximum of the exact distances, and the first point that attains it."""
 

@@ -43,7 +43,7 @@ rings_of_positions = st.lists(positions, min_size=3, max_size=7, unique=True)
 many_rings = st.lists(rings_of_positions, max_size=4)
 
 
-@pytest.mark.obligation("P3", "rings, GeoJSON and shapely come back from a PSLG bit for bit")
+@pytest.mark.obligation("P3", "rings, GeoJSON and shapely come back from a PSLG bit for bit", method="property-based")
 class TestRoundTrip:
     """Rings are the rings of their PSLG, and a PSLG of rings is that of its GeoJSON and of its shapely rings."""
 

@@ -36,7 +36,9 @@ def again(mesh: Triangulation) -> Triangulation:
     return constrained_delaunay(PSLG(mesh.points, mesh.segments, holes=mesh.holes))
 
 
-@pytest.mark.obligation("H1", "the segments and the seeds of the holes alone carve the same domain, by seeds")
+@pytest.mark.obligation(
+    "H1", "the segments and the seeds of the holes alone carve the same domain, by seeds", method="property-based"
+)
 class TestSeeds:
     """Whatever rule carved the domain, carving by the seeds of its holes carves it again."""
 

@@ -162,7 +162,7 @@ def same(one: PSLG, other: PSLG) -> bool:
     return one == other and all(a is b or a.tobytes() == b.tobytes() for a, b in values)
 
 
-@pytest.mark.obligation("P4", "a PSLG on file is the PSLG, bit for bit")
+@pytest.mark.obligation("P4", "a PSLG on file is the PSLG, bit for bit", method="property-based")
 class TestRoundTrip:
     """read_pslg(write_pslg(pslg)) = pslg."""
 

@@ -59,7 +59,9 @@ ORACLES: dict[str, Callable[..., int]] = {
 ARITY = {"nearer": 3, "along": 4, "crossing order": 5}
 
 
-@pytest.mark.obligation("K7", "the predicates about bisectors equal the sign in fractions for all finite doubles")
+@pytest.mark.obligation(
+    "K7", "the predicates about bisectors equal the sign in fractions for all finite doubles", method="property-based"
+)
 class TestBisectors:
     """Each sign is that of the fractions, within the window and guarded."""
 

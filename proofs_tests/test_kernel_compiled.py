@@ -57,7 +57,9 @@ def digests() -> str:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "compiled equals interpreted, bit for bit, in this process and in a later one")
+@pytest.mark.obligation(
+    "J1", "compiled equals interpreted, bit for bit, in this process and in a later one", method="bit for bit"
+)
 class TestLanes:
     """Every routine returns the same bits compiled, loaded from the cache in a new process, and interpreted."""
 
@@ -98,7 +100,7 @@ def machine_code(function: Callable[..., object], signature: object, **options: 
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of the kernel")
+@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of the kernel", method="machine code")
 class TestMachineCode:
     """No compiled function contains a fused multiply-add, which rounds once where the source rounds twice."""
 
@@ -150,7 +152,9 @@ class Interrupting:
         return self.predicate(*points)
 
 
-@pytest.mark.obligation("J1", "an interrupt in the rational stage never yields a wrong sign, and is not lost")
+@pytest.mark.obligation(
+    "J1", "an interrupt in the rational stage never yields a wrong sign, and is not lost", method="named cases"
+)
 class TestInterrupts:
     """Whatever is raised in a callback: the signs are right, the exception arrives after the run, and nothing hangs."""
 

@@ -33,7 +33,7 @@ def squared_distance(p: ExactPoint, q: ExactPoint) -> Fraction:
     return (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2
 
 
-@pytest.mark.obligation("K7", "circumcentre and crossing are exact")
+@pytest.mark.obligation("K7", "circumcentre and crossing are exact", method="property-based")
 class TestExactConstructions:
     """The circumcentre has the same exact distance from all corners; the crossing lies on both segments."""
 
@@ -96,7 +96,9 @@ class TestExactConstructions:
             point_on_segment((0, 0), (1, 1), math.nan)
 
 
-@pytest.mark.obligation("K7", "a rounded construction is the nearest double, and states its error")
+@pytest.mark.obligation(
+    "K7", "a rounded construction is the nearest double, and states its error", method="property-based"
+)
 class TestRounding:
     """Each coordinate is the nearest double, ties to even; the error is exact, at most half an ulp."""
 

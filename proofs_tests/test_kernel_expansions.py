@@ -148,7 +148,7 @@ def checkers(mini: MiniFloat, backend: Backend) -> dict[str, Arithmetic]:
 SOUND = checkers(MiniFloat(PRECISION), Backend.LOOPS)
 
 
-@pytest.mark.obligation("K5", "expansion sum, scaling and product are exact and nonadjacent")
+@pytest.mark.obligation("K5", "expansion sum, scaling and product are exact and nonadjacent", method="exhaustive")
 class TestExpansions:
     """The components of a result sum to the exact value and are nonadjacent, hence bit-disjoint.
 
@@ -205,7 +205,7 @@ class TestExpansions:
         assert not is_exact_expansion(np.array([0.0, 6.0]), 2, 6.0)
 
 
-@pytest.mark.obligation("K5", "the determinant of exact pairs is exact, in doubles")
+@pytest.mark.obligation("K5", "the determinant of exact pairs is exact, in doubles", method="exhaustive")
 class TestDeterminant:
     """determinant_2x2 of nonoverlapping pairs of doubles has the exact value, in sixteen components or fewer."""
 

@@ -32,7 +32,7 @@ def largest_needed(last: Bounded) -> Fraction:
     return last.e * (1 + U) ** 2 / (1 - U)
 
 
-@pytest.mark.obligation("K1", "the filter constants are sound for u = 2^-53, by exact calculus")
+@pytest.mark.obligation("K1", "the filter constants are sound for u = 2^-53, by exact calculus", method="calculus")
 class TestConstants:
     """The bound that the calculus of rounding errors asks for is at most the constant of the filter."""
 
@@ -91,7 +91,9 @@ def published(precision: int) -> float:
 BINADES = 4
 
 
-@pytest.mark.obligation("K3", "the filters of orient2d and diametral never lie (exhaustive, 3 bits)")
+@pytest.mark.obligation(
+    "K3", "the filters of orient2d and diametral never lie (exhaustive, 3 bits)", method="exhaustive"
+)
 class TestFilterNeverLies:
     """A sign that the filter certifies is the exact one: over every input of the format, up to symmetries.
 
@@ -103,7 +105,7 @@ class TestFilterNeverLies:
         assert lies(name, MiniFloat(3), published(3), BINADES) == 0
 
 
-@pytest.mark.obligation("K4", "an unsound constant and a missing guard are found by K3")
+@pytest.mark.obligation("K4", "an unsound constant and a missing guard are found by K3", method="exhaustive")
 class TestFilterControls:
     """The same search finds lies where there are some."""
 

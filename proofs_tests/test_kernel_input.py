@@ -27,7 +27,9 @@ SCALARS: list[tuple[Callable[..., object], int]] = [
 EXTENDED = np.finfo(np.longdouble).nmant > 52
 
 
-@pytest.mark.obligation("K7", "coordinates of every exact number type, mixed, give the exact sign")
+@pytest.mark.obligation(
+    "K7", "coordinates of every exact number type, mixed, give the exact sign", method="property-based"
+)
 class TestNumberTypes:
     """int, float, numpy scalar, Fraction, mpz, mpq of one value give one answer, and no value is rounded."""
 
@@ -80,7 +82,7 @@ class TestNumberTypes:
         assert ek.orient2d(a, b, (float(c[0]), float(c[1]))) == 0
 
 
-@pytest.mark.obligation("K7", "NaN, infinity and what is no number raise a typed error")
+@pytest.mark.obligation("K7", "NaN, infinity and what is no number raise a typed error", method="named cases")
 class TestBadPoints:
     """Every function refuses every bad coordinate, in every position, with an ExactMeshError that shows it."""
 
@@ -125,7 +127,9 @@ class TestBadPoints:
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
-@pytest.mark.obligation("K7", "array input: any layout and dtype, nothing rounded, culprits named by index")
+@pytest.mark.obligation(
+    "K7", "array input: any layout and dtype, nothing rounded, culprits named by index", method="named cases"
+)
 class TestArrays:
     """Numbers that are doubles pass whatever holds them; any other number is refused with its index."""
 
@@ -221,7 +225,9 @@ class TestArrays:
         assert finite_points(largest).tolist() == largest.tolist()
 
 
-@pytest.mark.obligation("K7", "vertex indices: any integer dtype, nothing wrapped, culprits named by index")
+@pytest.mark.obligation(
+    "K7", "vertex indices: any integer dtype, nothing wrapped, culprits named by index", method="named cases"
+)
 class TestVertexIndices:
     """Integers that fit 31 bits pass whatever holds them; any other is refused with its row."""
 
@@ -260,7 +266,9 @@ BATCHES: list[tuple[Callable[..., npt.NDArray[np.int8]], Callable[..., int], int
 ]
 
 
-@pytest.mark.obligation("K7", "batch predicates equal the scalar ones, element by element, over any broadcast")
+@pytest.mark.obligation(
+    "K7", "batch predicates equal the scalar ones, element by element, over any broadcast", method="differential"
+)
 class TestBatch:
     """int8 signs, one for each row; a single point stands for as many as the others are."""
 

@@ -12,7 +12,9 @@ from exactkernel import jit, rational
 
 
 @pytest.mark.obligation(
-    "J1", "stale or foreign machine code is never loaded; a folder that cannot be written is no error"
+    "J1",
+    "stale or foreign machine code is never loaded; a folder that cannot be written is no error",
+    method="named cases",
 )
 class TestCacheFolder:
     """The folder's name depends on every source; it is the user's own; where none can be written, a new one is made."""
@@ -91,7 +93,7 @@ def _increment(x: float) -> float:
     return x + 1.0
 
 
-@pytest.mark.obligation("J1", "jit and the callbacks work the same in both lanes")
+@pytest.mark.obligation("J1", "jit and the callbacks work the same in both lanes", method="named cases")
 class TestBothLanes:
     """What jit returns computes what its source computes, whether it compiles or not."""
 

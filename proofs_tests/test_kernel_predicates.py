@@ -38,7 +38,9 @@ def in_contexts(adaptive: Callable[..., int], points: tuple[Point, ...]) -> set[
 
 
 @pytest.mark.obligation(
-    "K7", "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles"
+    "K7",
+    "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles",
+    method="property-based",
 )
 class TestExactSigns:
     """Scalar, batch, and in a loop with any context: the sign is that of the determinant in fractions."""
@@ -111,7 +113,9 @@ STAGED: list[Case] = [
 ]
 
 
-@pytest.mark.obligation("K7", "the stage that decides is pinned, for each stage of each predicate")
+@pytest.mark.obligation(
+    "K7", "the stage that decides is pinned, for each stage of each predicate", method="named cases"
+)
 class TestStages:
     """Each stage decides the inputs that it is there for, and the one before it did not; the sign is exact."""
 

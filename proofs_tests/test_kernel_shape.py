@@ -61,7 +61,7 @@ def contexts(points: Triangle) -> list[Context]:
     return [guarded_context(), make_context(np.array(points))]
 
 
-@pytest.mark.obligation("K1", "the constants of the bounds on shapes are sound, by exact calculus")
+@pytest.mark.obligation("K1", "the constants of the bounds on shapes are sound, by exact calculus", method="calculus")
 class TestShapeConstants:
     """The bound that the calculus of rounding errors asks for leaves at least 5u of the one that is used."""
 
@@ -84,7 +84,9 @@ class TestShapeConstants:
         assert largest_needed(self.cross * self.trigonometric) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
 
 
-@pytest.mark.obligation("K7", "cosine and sine of a bound are enclosed, and the directions are exact")
+@pytest.mark.obligation(
+    "K7", "cosine and sine of a bound are enclosed, and the directions are exact", method="property-based"
+)
 class TestTrigonometry:
     """The enclosures meet those of Machin and Taylor; pairs of doubles lie within 2^-105 of them."""
 
@@ -122,7 +124,9 @@ class TestTrigonometry:
         assert not low <= Fraction(math.cos(math.radians(20.0))) <= high
 
 
-@pytest.mark.obligation("K7", "angles against a bound: exact for all finite doubles and every bound")
+@pytest.mark.obligation(
+    "K7", "angles against a bound: exact for all finite doubles and every bound", method="property-based"
+)
 class TestAngles:
     """Scalar, and in a loop with any context: below and above are those of the law of cosines in fractions."""
 
@@ -193,7 +197,9 @@ class TestAngles:
         assert not ek.angle_below(RIGHT, 45)
 
 
-@pytest.mark.obligation("K7", "areas and lengths against a bound: exact for all finite doubles")
+@pytest.mark.obligation(
+    "K7", "areas and lengths against a bound: exact for all finite doubles", method="property-based"
+)
 class TestMeasures:
     """Scalar, and in a loop with any context: areas and lengths are compared as in fractions, ties included."""
 
@@ -266,7 +272,7 @@ def doubled_area(points: Triangle) -> Fraction:
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@pytest.mark.obligation("K7", "the stage that decides a bound on shapes is pinned")
+@pytest.mark.obligation("K7", "the stage that decides a bound on shapes is pinned", method="named cases")
 class TestShapeStages:
     """Each stage decides what it is there for: the rational stage only what lies outside the window."""
 
@@ -304,7 +310,7 @@ class TestShapeStages:
             assert k.counts[0].tolist() == [0, 0, 0, 0, 1]
 
 
-@pytest.mark.obligation("K7", "bad bounds and shapes raise a typed error")
+@pytest.mark.obligation("K7", "bad bounds and shapes raise a typed error", method="named cases")
 class TestBadBounds:
     """NaN, infinite, negative, no number: a typed error; a flat triangle has no angles."""
 

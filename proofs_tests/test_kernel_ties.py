@@ -30,7 +30,9 @@ def ignoring_the_order(a: Cell, b: Cell, c: Cell, d: Cell) -> int:
     return int(incircle(a, b, c, d)) or 1
 
 
-@pytest.mark.obligation("K9", "perturbed incircle is never zero and antisymmetric (exhaustive on the 4 x 4 grid)")
+@pytest.mark.obligation(
+    "K9", "perturbed incircle is never zero and antisymmetric (exhaustive on the 4 x 4 grid)", method="enumeration"
+)
 class TestPerturbedSign:
     """For four distinct points that are not all on a line the sign is not 0, changes with the parity of the order, and
     is that of incircle wherever that decides."""
@@ -110,7 +112,9 @@ def random_subsets(count: int) -> list[list[Cell]]:
     return [s for s in subsets if any(orient2d(s[0], s[1], p) != 0 for p in s)]
 
 
-@pytest.mark.obligation("K9", "the triangles with empty perturbed circles are one triangulation of the hull")
+@pytest.mark.obligation(
+    "K9", "the triangles with empty perturbed circles are one triangulation of the hull", method="enumeration"
+)
 class TestUniqueTriangulation:
     """The triangles whose perturbed circle is empty cover the convex hull exactly once and use every point."""
 

@@ -31,7 +31,9 @@ def is_error_free(function: Arithmetic, exact: Floats, a: Floats, b: Floats, pre
     )
 
 
-@pytest.mark.obligation("K5", "two_sum, fast_two_sum, two_diff are error-free for every pair (exhaustive, 3 to 8 bits)")
+@pytest.mark.obligation(
+    "K5", "two_sum, fast_two_sum, two_diff are error-free for every pair (exhaustive, 3 to 8 bits)", method="exhaustive"
+)
 class TestSums:
     """x = fl(a + b) and x + y = a + b exactly, for every pair of floats; fast_two_sum where |a| >= |b| or a = 0."""
 
@@ -72,7 +74,9 @@ class TestSums:
         assert not is_error_free(derived(name, MiniFloat(5, edits={name: edit})), exact, a, b, 5)
 
 
-@pytest.mark.obligation("K5", "split and two_product are error-free for every pair (exhaustive, 3 to 10 bits)")
+@pytest.mark.obligation(
+    "K5", "split and two_product are error-free for every pair (exhaustive, 3 to 10 bits)", method="exhaustive"
+)
 class TestProduct:
     """split gives two halves that multiply without rounding; two_product: x = fl(a b), x + y = a b exactly."""
 
@@ -115,7 +119,9 @@ class TestProduct:
         assert not is_error_free(derived("two_product", mini), a * b, a, b, 7)
 
 
-@pytest.mark.obligation("K5", "the tool itself: a derived function rounds, and rounds half to even")
+@pytest.mark.obligation(
+    "K5", "the tool itself: a derived function rounds, and rounds half to even", method="exhaustive"
+)
 class TestMiniFloat:
     """Both roundings of the tool agree with each other and with the definition, for all sums of tiny floats."""
 

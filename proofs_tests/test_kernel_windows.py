@@ -31,7 +31,9 @@ def largest_unit(values: list[float]) -> Fraction | None:
     return Fraction(integer & -integer, common)
 
 
-@pytest.mark.obligation("K6", "a coordinate inside the window is decided in doubles, one step outside in rationals")
+@pytest.mark.obligation(
+    "K6", "a coordinate inside the window is decided in doubles, one step outside in rationals", method="named cases"
+)
 class TestScalarWindow:
     """At each end of each window: the last coordinate inside needs no rationals, the next one outside always does."""
 
@@ -76,7 +78,11 @@ class TestScalarWindow:
             assert self.stages(staged, exact, outside) == {ek.Stage.RATIONAL}
 
 
-@pytest.mark.obligation("K6", "the context finds the window of an input, and opens it exactly as far as it is exact")
+@pytest.mark.obligation(
+    "K6",
+    "the context finds the window of an input, and opens it exactly as far as it is exact",
+    method="property-based",
+)
 class TestContext:
     """The scan finds the largest magnitude and the common unit; bounds are finite exactly inside the windows."""
 
@@ -144,7 +150,7 @@ class TestContext:
         assert oracle.orient2d((unit, 0.0), (0.0, unit), (0.0, 0.0)) == 1
 
 
-@pytest.mark.obligation("K6", "scaling into the window is exact and changes no sign")
+@pytest.mark.obligation("K6", "scaling into the window is exact and changes no sign", method="property-based")
 class TestScaling:
     """The result is the input times one power of two, inside the window if any power of two leads there."""
 
@@ -187,7 +193,11 @@ class TestScaling:
         assert scaled_into_window(tame)[0] is tame
 
 
-@pytest.mark.obligation("K6", "differences of 4096 grid units are decided exactly by the grid stage, 4097 by another")
+@pytest.mark.obligation(
+    "K6",
+    "differences of 4096 grid units are decided exactly by the grid stage, 4097 by another",
+    method="property-based",
+)
 class TestGridStage:
     """At the limit of the grid stage the double determinant is exact, zero included."""
 

@@ -81,7 +81,7 @@ def plain_test(points: Points, edge: Edge[Primal]) -> bool:
     return incircle(a, b, c, d) <= 0
 
 
-@pytest.mark.obligation("M2", "each flip lowers 6 Phi by exactly incircle, a tie only its slopes")
+@pytest.mark.obligation("M2", "each flip lowers 6 Phi by exactly incircle, a tie only its slopes", method="enumeration")
 class TestOneFlip:
     """A flip of ac to bd changes 6 Phi by exactly -incircle(a, b, c, d), whichever edge is flipped, Delaunay or not;
     a tie changes nothing but the slopes of 6 Phi in the lifts."""
@@ -153,7 +153,9 @@ def descends(points: Sequence[RationalPoint], met: Sequence[Triangulation]) -> b
     return all(after < before for before, after in pairwise(heights))
 
 
-@pytest.mark.obligation("M2", "the perturbed potential falls along Lawson, which takes at most n(n-1)/2 flips")
+@pytest.mark.obligation(
+    "M2", "the perturbed potential falls along Lawson, which takes at most n(n-1)/2 flips", method="enumeration"
+)
 class TestDescent:
     """Along Lawson's algorithm the perturbed potential falls strictly, ties included, so it ends, within n(n-1)/2
     flips: an edge once gone never comes back."""
@@ -182,7 +184,9 @@ class TestDescent:
         assert len({mesh_oracle.potential(exact, t) for t in met}) == 1
 
 
-@pytest.mark.obligation("M3", "there are as many triangulations as published, and flips connect them")
+@pytest.mark.obligation(
+    "M3", "there are as many triangulations as published, and flips connect them", method="enumeration"
+)
 class TestCounts:
     """The enumerators find the published number of triangulations, each once and admissible; flips reach them all."""
 
@@ -215,7 +219,9 @@ class TestCounts:
 
 
 @pytest.mark.obligation(
-    "M3", "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal"
+    "M3",
+    "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal",
+    method="enumeration",
 )
 class TestOneSink:
     """From every triangulation Lawson's algorithm ends in the one whose perturbed circles are empty, which is also what
@@ -268,7 +274,7 @@ class TestOneSink:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M3", "Lawson ends there from starts far away")
+@pytest.mark.obligation("M3", "Lawson ends there from starts far away", method="named cases")
 class TestManyPoints:
     """The same from a start that has nothing to do with Delaunay: a fan of needles, and equal diagonals."""
 
@@ -296,7 +302,9 @@ class TestManyPoints:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "constrained flips end in THE constrained Delaunay triangulation, from every start")
+@pytest.mark.obligation(
+    "M5", "constrained flips end in THE constrained Delaunay triangulation, from every start", method="enumeration"
+)
 class TestConstrained:
     """From any triangulation in which the segments are edges, the flips of the others end in the triangulation that
     inserting the segments gives."""

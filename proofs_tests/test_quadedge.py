@@ -67,7 +67,9 @@ def states() -> list[IntArray]:
 
 
 @pytest.mark.obligation(
-    "M1", "every reachable state of at most four edges is a subdivision of orientable surfaces (Euler)"
+    "M1",
+    "every reachable state of at most four edges is a subdivision of orientable surfaces (Euler)",
+    method="exhaustive",
 )
 class TestEveryState:
     """From k isolated edges splices reach (2k)! states: every permutation of the primal quarter-edges as onext, each
@@ -107,7 +109,9 @@ class TestEveryState:
             QuadEdge.from_arrays(ring, labels, labels.copy())
 
 
-@pytest.mark.obligation("M1", "rot^4 = e, and every operator is what its definition says, in every state")
+@pytest.mark.obligation(
+    "M1", "rot^4 = e, and every operator is what its definition says, in every state", method="exhaustive"
+)
 class TestOperators:
     """rot has order four, sym is its square, and each operator is what it is without the dual: with oprev the inverse
     of onext, lnext = oprev sym, dnext = sym onext sym, and so on; each next is the inverse of its prev."""
@@ -157,7 +161,9 @@ class TestOperators:
                 assert {e.left for e in handle.face()} == {handle.left}
 
 
-@pytest.mark.obligation("M1", "splice is an involution that joins or cuts one origin and one left face")
+@pytest.mark.obligation(
+    "M1", "splice is an involution that joins or cuts one origin and one left face", method="exhaustive"
+)
 class TestSplice:
     """Splice is its own inverse; it joins two origins or cuts one, and the same with the left faces."""
 
@@ -199,7 +205,9 @@ def breaks_axioms(ring: Permutation, q: int) -> bool:
     return back // 4 * 4 + (back + 1) % 4 != q
 
 
-@pytest.mark.obligation("M1", "check accepts just the edge algebras and names the quarter-edge that breaks an axiom")
+@pytest.mark.obligation(
+    "M1", "check accepts just the edge algebras and names the quarter-edge that breaks an axiom", method="corruption"
+)
 class TestCheck:
     """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
 
@@ -257,7 +265,9 @@ def inner_edges(surface: QuadEdge) -> list[QuarterEdge]:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M1", "swap, split_face, connect and delete_edge are what splices make of them")
+@pytest.mark.obligation(
+    "M1", "swap, split_face, connect and delete_edge are what splices make of them", method="exhaustive"
+)
 class TestDerivedOperations:
     """swap, split_face and delete_edge are what make_edge and splice make of them, entry by entry."""
 
@@ -476,7 +486,7 @@ def rejected(check: Callable[[], None]) -> bool:
     return False
 
 
-@pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step")
+@pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step", method="stateful machine")
 class TestModel:
     """After any sequence of operations, deletions included, the quad-edge is its model, and an edge algebra."""
 
@@ -499,7 +509,9 @@ class TestModel:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M1", "triangles to quad-edge and back is the identity; anything else is refused")
+@pytest.mark.obligation(
+    "M1", "triangles to quad-edge and back is the identity; anything else is refused", method="enumeration"
+)
 class TestFromTriangles:
     """from_triangles and triangles are inverse to each other; what is no triangulation is refused, not walked into."""
 
@@ -617,7 +629,7 @@ surface.connect(edge, edge.rot.onext)  # wrong
 """
 
 
-@pytest.mark.obligation("M1", "primal and dual, vertices and faces are different types")
+@pytest.mark.obligation("M1", "primal and dual, vertices and faces are different types", method="named cases")
 class TestTypedHandles:
     """To a type checker primal and dual edges, vertices and faces are different things: it rejects just the lines that
     mix them."""

@@ -150,7 +150,9 @@ def steiner_faults(done: Refinement, start: Triangulation, case: Case) -> list[s
     return faults
 
 
-@pytest.mark.obligation("R1", "theorems A, B, E, F on the output: constrained Delaunay, covering the domain")
+@pytest.mark.obligation(
+    "R1", "theorems A, B, E, F on the output: constrained Delaunay, covering the domain", method="property-based"
+)
 class TestMesh:
     """Whatever is asked for, complete or not, the result is a constrained Delaunay triangulation of the domain: by
     brute force in fractions, and by the verifier."""
@@ -202,7 +204,9 @@ class TestMesh:
             assert (not refine_oracle.mesh_faults(Output(points, triangles, points, segments))) is sound
 
 
-@pytest.mark.obligation("R1", "angle and area bounds hold exactly, and every exception is listed with its reason")
+@pytest.mark.obligation(
+    "R1", "angle and area bounds hold exactly, and every exception is listed with its reason", method="property-based"
+)
 class TestAccount:
     """The triangles that are left are those that brute force finds bad; reasons apply; points, parents, radii are
     true."""
@@ -261,7 +265,11 @@ class TestAccount:
                 assert radius[v] >= least * radius[parent], (v, parent)
 
 
-@pytest.mark.obligation("R1", "conforming: every edge of the boundary and of a segment Gabriel, circumcentres inside")
+@pytest.mark.obligation(
+    "R1",
+    "conforming: every edge of the boundary and of a segment Gabriel, circumcentres inside",
+    method="property-based",
+)
 class TestConforming:
     """With ``conforming``, wherever the points last: Gabriel by brute force and by the verifier."""
 
@@ -286,7 +294,9 @@ class TestConforming:
         assert not refine_oracle.encroached(output_of(done, tent))
 
 
-@pytest.mark.obligation("R1", "size fields, unsuitable triangles, areas of triangles and regions")
+@pytest.mark.obligation(
+    "R1", "size fields, unsuitable triangles, areas of triangles and regions", method="property-based"
+)
 class TestAskedFor:
     """What the user's functions object to is gone, or listed; areas hold where they are asked for."""
 
@@ -363,7 +373,7 @@ class TestAskedFor:
             ).raise_if_failed()  # fmt: skip
 
 
-@pytest.mark.obligation("R1", "refining further, again and elsewhere gives the same")
+@pytest.mark.obligation("R1", "refining further, again and elsewhere gives the same", method="property-based")
 class TestRepetition:
     """The result depends on the input alone; what is good is left as it is; a power of two changes nothing."""
 
@@ -412,7 +422,7 @@ class TestRepetition:
         assert np.array_equal(one.triangulation.triangles, two.triangulation.triangles)
 
 
-@pytest.mark.obligation("R2", "refinement ends, for every valid graph and every angle")
+@pytest.mark.obligation("R2", "refinement ends, for every valid graph and every angle", method="property-based")
 class TestTermination:
     """Counted, not timed: a limit on points that is far above what is needed is not reached."""
 
@@ -499,7 +509,7 @@ BAD_OPTIONS: list[tuple[dict[str, object], type[Exception], str]] = [
 ]
 
 
-@pytest.mark.obligation("R2", "bad options: a typed error, or an honest partial result")
+@pytest.mark.obligation("R2", "bad options: a typed error, or an honest partial result", method="named cases")
 class TestBadInput:
     """What is no option names itself; what asks for too much gets a partial result that says so."""
 

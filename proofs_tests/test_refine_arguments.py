@@ -42,7 +42,7 @@ def longest_edge_squared(mesh: Triangulation) -> Fraction:
     return max((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 for a, b in ends)
 
 
-@pytest.mark.obligation("R2", "the domain of a graph is what carve says, refined or not")
+@pytest.mark.obligation("R2", "the domain of a graph is what carve says, refined or not", method="named cases")
 class TestCarve:
     """Law: refine(graph, carve=c) refines what constrained_delaunay(graph, carve=c) triangulates."""
 
@@ -64,7 +64,9 @@ class TestCarve:
             refine(graph)
 
 
-@pytest.mark.obligation("R2", "a number as size, or from a size function, is that length everywhere")
+@pytest.mark.obligation(
+    "R2", "a number as size, or from a size function, is that length everywhere", method="named cases"
+)
 class TestSize:
     """Law: a length as ``size``, and a function that returns one number, mean that length everywhere."""
 

@@ -19,7 +19,9 @@ def is_right(done: Refinement) -> bool:
     return verify(mesh.points, mesh.triangles, segments=mesh.segments, domain=mesh.domain, claims=claims).ok
 
 
-@pytest.mark.obligation("R2", "lengths that halve because of what is near by are not taken for a run that never ends")
+@pytest.mark.obligation(
+    "R2", "lengths that halve because of what is near by are not taken for a run that never ends", method="named cases"
+)
 class TestChannels:
     """Segments far longer than they are apart, which meet at right angles or not at all, are refined to the end."""
 
@@ -36,7 +38,9 @@ class TestChannels:
         assert len(done.unrefined) == 0
 
 
-@pytest.mark.obligation("R1", "only triangles across from an input angle below 60 degrees are excused by one")
+@pytest.mark.obligation(
+    "R1", "only triangles across from an input angle below 60 degrees are excused by one", method="named cases"
+)
 class TestExcuses:
     """A domain without small angles has no triangle that a small input angle excuses."""
 
@@ -58,7 +62,9 @@ class TestExcuses:
         assert set(done.reasons.tolist()) == {Reason.SMALL_INPUT_ANGLE}
 
 
-@pytest.mark.obligation("R1", "where points are rounded off their segments, the mesh is constrained Delaunay still")
+@pytest.mark.obligation(
+    "R1", "where points are rounded off their segments, the mesh is constrained Delaunay still", method="named cases"
+)
 class TestBentSegments:
     """Segments at tiny angles, made Gabriel down to the last bits: what is returned is right, complete or not."""
 
@@ -81,7 +87,9 @@ class TestBentSegments:
             assert all(diametral(start, end, tuple(p)) <= 0 for p in mesh.points.tolist())
 
 
-@pytest.mark.obligation("R2", "sizes below what forbidden edges allow are given up, not halved for ever")
+@pytest.mark.obligation(
+    "R2", "sizes below what forbidden edges allow are given up, not halved for ever", method="named cases"
+)
 class TestForbiddenEdges:
     """Where the boundary must not be divided, triangles on it are left, with the reason."""
 
@@ -93,7 +101,9 @@ class TestForbiddenEdges:
         assert is_right(done)
 
 
-@pytest.mark.obligation("R1", "no edge with a new end is shorter than min_edge, by as little as may be")
+@pytest.mark.obligation(
+    "R1", "no edge with a new end is shorter than min_edge, by as little as may be", method="named cases"
+)
 class TestLeastEdge:
     """A length that rounds to the least edge, and is shorter, is refused; one that is the least edge is not."""
 
@@ -114,7 +124,9 @@ class TestLeastEdge:
         assert mesh.statistics().shortest_edge == 0.5
 
 
-@pytest.mark.obligation("R1", "the displacement is a bound of the root of its exact square, at any scale")
+@pytest.mark.obligation(
+    "R1", "the displacement is a bound of the root of its exact square, at any scale", method="named cases"
+)
 class TestDisplacement:
     """Squares beyond the doubles, above and below, have roots that are doubles."""
 

@@ -153,7 +153,11 @@ def answer(pslg: PSLG, bits: int) -> PSLG | SnappingError | CrossingError:
         return error
 
 
-@pytest.mark.obligation("R1", "a graph that is snapped to a grid is the same drawing, and its segments can be halved")
+@pytest.mark.obligation(
+    "R1",
+    "a graph that is snapped to a grid is the same drawing, and its segments can be halved",
+    method="property-based",
+)
 class TestSnapped:
     """Law: every point goes to the nearest of the grid; the drawing is the same one, by brute force; segments can be
     halved as often as is said. Or it is refused, and what is named is too near."""
@@ -223,7 +227,9 @@ class TestSnapped:
         assert len(arrange(cross).pslg.snapped(20).segments) == 4
 
 
-@pytest.mark.obligation("R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined")
+@pytest.mark.obligation(
+    "R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined", method="named cases"
+)
 class TestCovered:
     """Law: of a domain on a coarse grid, acute corners included, no Steiner point is off its segment."""
 

@@ -101,7 +101,9 @@ def all_sets(brute: BruteForce) -> Iterator[tuple[Triangle, ...]]:
         yield tuple(t for i, t in enumerate(triples) if bits >> i & 1)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1", "every set of triangles over five points is judged as brute force judges it", method="enumeration"
+)
 class TestEverySetOfFivePoints:
     """For every set of triangles over five points each decided verdict is that of brute force, and only the
     two documented ones are ever undecided."""
@@ -133,7 +135,11 @@ def random_triangles(random: Random, n: int, size: int) -> list[Triangle]:
     return triangles
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "random lists of triangles over six and seven points, degenerate ones too, are judged as by brute force",
+    method="differential",
+)
 class TestRandomSets:
     """The same for random lists over six and seven points of a small grid: any orientation, repeated
     triangles, collinear and coincident points."""
@@ -172,7 +178,11 @@ class TestRandomSets:
 STAR = [(0.0, 0.0)] + [(float(np.cos(a)), float(np.sin(a))) for a in np.arange(5) * 4 * np.pi / 5]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "what only a global condition finds, the double cover first, is found, and its kind is named",
+    method="named cases",
+)
 class TestHardSets:
     """What only a global condition finds is found, and the same mesh without the fault is accepted."""
 

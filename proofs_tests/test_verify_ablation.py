@@ -62,7 +62,9 @@ def is_right(points: Points, triangles: Sequence[Triangle]) -> bool:
     )
 
 
-@pytest.mark.obligation("V1", "theorems A to D: the local conditions accept exactly the Delaunay triangulations")
+@pytest.mark.obligation(
+    "V1", "theorems A to D: the local conditions accept exactly the Delaunay triangulations", method="enumeration"
+)
 class TestHullConditionsSuffice:
     """For every set of triangles over five points, all conditions hold exactly if brute force finds nothing wrong."""
 
@@ -82,7 +84,7 @@ class TestHullConditionsSuffice:
         assert (accepted > 0) is has_one
 
 
-@pytest.mark.obligation("V2", "theorems A to D: each condition is necessary")
+@pytest.mark.obligation("V2", "theorems A to D: each condition is necessary", method="ablation")
 class TestHullConditionsAreNecessary:
     """Without any one condition the checker accepts a mesh that is wrong; the verifier refuses it, and says why."""
 
@@ -112,7 +114,7 @@ POLYGONS: dict[str, Points] = {
 }
 
 
-@pytest.mark.obligation("V2", "theorem C: each condition is necessary")
+@pytest.mark.obligation("V2", "theorem C: each condition is necessary", method="ablation")
 class TestConvexConditionsAreNecessary:
     """A closed polygon that turns left or goes straight on, never back, and changes its lexicographic direction twice,
     is convex; without any one of the three conditions one passes that is not."""
@@ -172,7 +174,7 @@ REGIONS: dict[str, list[Region]] = {
 }
 
 
-@pytest.mark.obligation("V2", "theorems A, B, E, F: each condition is necessary")
+@pytest.mark.obligation("V2", "theorems A, B, E, F: each condition is necessary", method="ablation")
 class TestDomainConditionsAreNecessary:
     """The same for domains, bounded by directed edges."""
 
@@ -208,7 +210,11 @@ class TestDomainConditionsAreNecessary:
         assert verify(KITE, HALVES, segments=[(0, 2)]).ok
 
 
-@pytest.mark.obligation("V1", "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations")
+@pytest.mark.obligation(
+    "V1",
+    "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations",
+    method="enumeration",
+)
 class TestDomainConditionsSuffice:
     """For sets of triangles over five points, as the domain that they bound: all conditions hold exactly if they are
     counterclockwise, admissible, over no unused point, and no visible point lies in a circle."""

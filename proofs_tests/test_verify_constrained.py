@@ -256,7 +256,11 @@ def truth_of(case: Case) -> Truth:
     return Truth(points, (), Plain.of(theirs, segments, holes, rule))
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "every set of triangles over five points is judged against segments and domains as by visibility itself",
+    method="enumeration",
+)
 class TestEverySet:
     """For every set of triangles over five points each decided verdict about segments and domains is that of brute
     force: visibility, chains and faces by definition. Undecided is only what the enum says."""
@@ -320,7 +324,11 @@ def grown(truth: Truth, random: Random) -> list[Triangle]:
     return chosen if random.random() < 0.7 else chosen[1:]
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "random domains on a small grid, where all coincides with all, are judged as by brute force",
+    method="differential",
+)
 class TestRandomDomains:
     """The same for random domains over points of a small grid, where everything coincides with everything."""
 

@@ -125,7 +125,11 @@ CORRUPTIONS: list[tuple[Callable[[Mesh, Random], Mesh], Property]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "of a domain with holes, each corruption breaks the property that it should, with a witness",
+    method="corruption",
+)
 class TestHoles:
     """A polygon with many holes, some of which touch, is what it claims to be; each corruption breaks the property
     that it is meant to break, with a witness."""
@@ -215,7 +219,9 @@ ABLATIONS: list[tuple[object, str, object]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "without any one check of segments and domains the verifier contradicts brute force", method="ablation"
+)
 class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere, so none is superfluous."""
 
@@ -252,7 +258,11 @@ def labelled(labels: Sequence[float], regions: Sequence[tuple[float, float, floa
     return verify(SQUARE, QUARTERS, domain=with_regions, labels=labels).findings[Property.REGIONS]
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "labels are right iff they are constant on each face between segments and those of the regions' points",
+    method="enumeration",
+)
 class TestRegions:
     """Labels are constant across edges that lie on no segment, and where a region's point lies they are its attribute.
     The diagonal 0-4-2 of a square parts its four quarters into two faces."""
@@ -296,7 +306,11 @@ class TestRegions:
         assert missing.findings[Property.REGIONS].because == (Property.SEGMENTS_PRESENT,)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "segments through vertices of large degree, found by angle, are judged as by brute force",
+    method="enumeration",
+)
 class TestBundles:
     """Chains through vertices of large degree are found by angle: the verdicts are the same."""
 

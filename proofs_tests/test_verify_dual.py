@@ -169,7 +169,9 @@ def dual_finding(points: npt.ArrayLike, dual: Dual) -> Finding:
     return verify(mesh.points, mesh.triangles, dual=dual).findings[Property.VORONOI_DUAL]
 
 
-@pytest.mark.obligation("V1", "a diagram is accepted iff its ridges are those of brute force, to the next doubles")
+@pytest.mark.obligation(
+    "V1", "a diagram is accepted iff its ridges are those of brute force, to the next doubles", method="corruption"
+)
 class TestDual:
     """Right diagrams and corrupted ones: the verdict is that of a comparison with all bisectors, in fractions."""
 
@@ -263,7 +265,9 @@ class TestDual:
         assert not verify(mesh.points, mesh.triangles, dual=claimed).ok
 
 
-@pytest.mark.obligation("V1", "a diagram is claimed where it is given; without Delaunay nothing is said of it")
+@pytest.mark.obligation(
+    "V1", "a diagram is claimed where it is given; without Delaunay nothing is said of it", method="named cases"
+)
 class TestClaims:
     """What is no diagram is refused."""
 
@@ -309,7 +313,7 @@ class TestClaims:
         assert finding.severity is Severity.WRONG
 
 
-@pytest.mark.obligation("V2", "each condition about diagrams is necessary")
+@pytest.mark.obligation("V2", "each condition about diagrams is necessary", method="ablation")
 class TestAblation:
     """A diagram that each check refuses passes when that check is taken out."""
 

@@ -131,7 +131,9 @@ CORRUPTIONS: list[tuple[Callable[[Mesh, Random], Mesh], Property]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "of a sound mesh by another mesher, each corruption breaks the property that it should", method="corruption"
+)
 class TestCorruptedMeshes:
     """A sound mesh of another mesher has every claimed property; each corruption breaks the one that it is
     meant to break, and the verdicts on the corrupted mesh are those of brute force."""
@@ -159,7 +161,11 @@ class TestCorruptedMeshes:
         assert not disagreements(BruteForce([(x, y) for x, y in points.tolist()]), points.tolist(), rows)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "any part of an admissible mesh is admissible; with one more triangle it is what brute force says",
+    method="differential",
+)
 class TestParts:
     """Any part of an admissible set is admissible, however ragged its boundary; with one more triangle it is
     what brute force says. This is where the plane sweep decides."""
@@ -217,7 +223,9 @@ def holds(*_: object) -> Finding:
     return HOLDING
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "without any one check of triangles and edges the verifier contradicts brute force", method="ablation"
+)
 class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere: none is superfluous, and
     the comparison with brute force would notice its loss."""
@@ -266,7 +274,11 @@ CORPUS: dict[str, Points] = {
 }
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "wrong meshes of scipy and GEOS are refused, with exact witnesses; wrong is kept apart from rounding",
+    method="named cases",
+)
 class TestKnownFailures:
     """Wrong answers of other meshers, which they do not report, are refused with a witness that is exactly
     right."""

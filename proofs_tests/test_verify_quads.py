@@ -110,7 +110,11 @@ def some_sets(points: Points, triples: int) -> Iterator[tuple[Cell, ...]]:
         yield tuple(random.sample(sound, 3))
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "every small set of triangles and quadrilaterals over five points is judged as by brute force",
+    method="enumeration",
+)
 class TestEverySmallSet:
     """For every set of two triangles and quadrilaterals over five points, and some of three, each verdict is that of
     brute force on polygons."""
@@ -167,7 +171,11 @@ def tilings() -> Iterator[tuple[Cell, ...]]:
         yield tuple(cell for part in parts for cell in part)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "in tilings of a grid by squares and halves, segments, domains and labels are judged rightly",
+    method="enumeration",
+)
 class TestTilingsOfAGrid:
     """Squares, whole or cut: they are admissible; a segment is there if it is a chain of sides of cells, a diagonal of
     a quadrilateral is none; the domain is covered if every square is; labels change across segments only."""
@@ -338,7 +346,11 @@ CORRUPTIONS: list[Corruption] = [
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "of a mesh with quadrilaterals, each corruption breaks the property that it should; the witness names it",
+    method="corruption",
+)
 class TestCorrupted:
     """A mesh of triangles and quadrilaterals is what it claims to be; each corruption breaks the property that it is
     meant to break, and the witness names the cells that were touched."""
@@ -384,7 +396,9 @@ def digests() -> list[str]:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "the verifier says the same of quadrilaterals compiled and interpreted")
+@pytest.mark.obligation(
+    "J1", "the verifier says the same of quadrilaterals compiled and interpreted", method="bit for bit"
+)
 class TestLanes:
     """Reports are the same to the letter, the stages that decided included."""
 

@@ -58,7 +58,9 @@ def frozen(array: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     return array
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1", "the verdict depends on the values alone: not on dtype, layout, byte order or scale", method="named cases"
+)
 class TestInput:
     """The verdict depends on the values alone: not on dtype, layout, byte order, or who owns the array."""
 
@@ -143,7 +145,9 @@ class TestInput:
         assert verify(points, [*fan, fan[7]]).verdict(Property.EDGE_MANIFOLD) is Verdict.FAILS
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1", "a point that is not finite and an index out of range are findings that name them", method="named cases"
+)
 class TestUnreadable:
     """A point that is not finite and an index out of range are findings, named; what rests on them is
     undecided."""

@@ -121,7 +121,9 @@ def checked(finding: Finding) -> Finding:
 SCALES = (1.0, 2.0**-70, 2.0**-300, 2.0**330)
 
 
-@pytest.mark.obligation("V1", "the number of rounding-sized violations is that of the definition in fractions")
+@pytest.mark.obligation(
+    "V1", "the number of rounding-sized violations is that of the definition in fractions", method="differential"
+)
 class TestCounts:
     """A violation is rounding-sized iff its determinant is at most the filter's constant times its permanent: counted
     over all violations, at every scale, and the same for each witness."""
@@ -225,7 +227,7 @@ def many() -> tuple[FloatArray, list[Triangle]]:
     return np.array([*points, *kite]), [*triangles, (k, k + 1, k + 2), (k, k + 2, k + 3)]
 
 
-@pytest.mark.obligation("V1", "of many violations the wrong ones are told, whatever their place")
+@pytest.mark.obligation("V1", "of many violations the wrong ones are told, whatever their place", method="named cases")
 class TestRanking:
     """The witnesses of a finding are the wrong violations before the rounding-sized, the largest first."""
 

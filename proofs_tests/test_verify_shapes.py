@@ -100,7 +100,9 @@ def shape_meets(a: RationalPoint, b: RationalPoint, c: RationalPoint, d: Rationa
     return any(oracles.on_segment(p, *line) for p, line in inner)
 
 
-@pytest.mark.obligation("V1", "the verifier decides Gabriel edges and circumcentres as brute force does")
+@pytest.mark.obligation(
+    "V1", "the verifier decides Gabriel edges and circumcentres as brute force does", method="enumeration"
+)
 class TestCircles:
     """For every set of triangles over five points, with and without segments, and for meshes with holes: the verdicts
     are those of the definitions, visibility included."""
@@ -176,7 +178,9 @@ SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
 TWO = [(0, 1, 2), (0, 2, 3)]
 
 
-@pytest.mark.obligation("V1", "bounds on angles and areas are decided as in fractions, with witnesses")
+@pytest.mark.obligation(
+    "V1", "bounds on angles and areas are decided as in fractions, with witnesses", method="differential"
+)
 class TestBounds:
     """The violations are the triangles that the law of cosines and the shoelace formula find, in any orientation."""
 
@@ -243,7 +247,7 @@ class TestBounds:
         assert verify(SQUARE, TWO, min_angle=45, max_angle=90, max_area=2).ok
 
 
-@pytest.mark.obligation("V1", "bounds are claims; bad ones are typed errors")
+@pytest.mark.obligation("V1", "bounds are claims; bad ones are typed errors", method="named cases")
 class TestClaims:
     """What is given is claimed; what is claimed without being given is refused, and so are bounds that are none."""
 
@@ -306,7 +310,7 @@ def conforming(**changed: object) -> Report:
     return verify(mesh.points, mesh.triangles, domain=domain, claims=CONFORMING_TRIANGULATION, **bounds)  # type: ignore[call-overload, no-any-return]  # bounds by name
 
 
-@pytest.mark.obligation("V2", "each condition about shapes is necessary")
+@pytest.mark.obligation("V2", "each condition about shapes is necessary", method="ablation")
 class TestAblation:
     """A mesh that each check refuses passes when that check is taken out."""
 

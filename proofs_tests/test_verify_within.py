@@ -79,7 +79,9 @@ def cases(seed: int) -> tuple[FloatArray, list[Triangle], FloatArray, list[Pair]
     return points, triangles, lines, ends
 
 
-@pytest.mark.obligation("V1", "a displaced segment is the chain of edges that stays nearest, by enumeration of all")
+@pytest.mark.obligation(
+    "V1", "a displaced segment is the chain of edges that stays nearest, by enumeration of all", method="differential"
+)
 class TestChains:
     """Of all chains that lead from end to end, ever forward, the verifier takes the one that enumeration finds best, in
     the window of the predicates and outside of it."""
@@ -139,7 +141,9 @@ class TestChains:
         assert not chains_of(points, triangles, np.array([[(0.0, 0.0), (float(n), 0.0)]]), [(0, n)], 2.0**-41)
 
 
-@pytest.mark.obligation("V1", "the nearest corner is that of brute force in fractions, ties by index")
+@pytest.mark.obligation(
+    "V1", "the nearest corner is that of brute force in fractions, ties by index", method="differential"
+)
 class TestNearest:
     """For points anywhere, at any scale, coincident or on a circle."""
 
@@ -187,7 +191,9 @@ def slanted(seed: int) -> PSLG:
     return PSLG(points, rings, holes=[(0.0, 0.0)])
 
 
-@pytest.mark.obligation("V1", "refined meshes cover their domain within exactly the distance that refinement reports")
+@pytest.mark.obligation(
+    "V1", "refined meshes cover their domain within exactly the distance that refinement reports", method="differential"
+)
 class TestRefined:
     """Steiner points on slanted segments are rounded: strictly the domain is missed; within any distance it is covered,
     and the distance that is found is the displacement; within the double below it, it is missed again."""
@@ -263,7 +269,9 @@ class TestRefined:
         assert not verify(mesh["vertices"], mesh["triangles"], domain=domain, within=below, claims=COVER).ok
 
 
-@pytest.mark.obligation("V1", "corners that a file format rounded are found, and their distance is exact")
+@pytest.mark.obligation(
+    "V1", "corners that a file format rounded are found, and their distance is exact", method="differential"
+)
 class TestMoved:
     """Coordinates rounded to 32 bits: the domain is covered within the largest distance of a corner from its point or
     of a vertex from its segment, as brute force in fractions measures it, and not within less."""
@@ -333,7 +341,9 @@ def damned(within: float | None) -> Report:
     return verify(points, ring, domain=domain, within=within, claims=COVER)
 
 
-@pytest.mark.obligation("V1", "what lies outside of the domain may be missing, within any distance, and moves nothing")
+@pytest.mark.obligation(
+    "V1", "what lies outside of the domain may be missing, within any distance, and moves nothing", method="named cases"
+)
 class TestLeftOut:
     """A segment in a hole is left where it is, although chains along the shore join its ends."""
 
@@ -389,7 +399,9 @@ def strict_of_displaced(points: Points, triangles: list[Triangle], domain: PSLG)
     return report.ok, squared
 
 
-@pytest.mark.obligation("V1", "within a distance the domain is covered iff the displaced domain is, strictly")
+@pytest.mark.obligation(
+    "V1", "within a distance the domain is covered iff the displaced domain is, strictly", method="differential"
+)
 class TestDisplaced:
     """Displace each segment along its best chain, found by enumeration, and verify strictly: the verdict is the same,
     and so is the distance. What is left out may only make the distance smaller."""
@@ -421,7 +433,7 @@ class TestDisplaced:
         assert {(True, True, True), (False, False, False), (True, True, False)} <= seen
 
 
-@pytest.mark.obligation("V1", "a distance is 0 or more, and needs a domain")
+@pytest.mark.obligation("V1", "a distance is 0 or more, and needs a domain", method="named cases")
 class TestArguments:
     """What is no distance is refused; without one nothing changes; the report says what was found."""
 
@@ -467,7 +479,7 @@ class TestArguments:
         assert report.findings[Property.COVERS_DOMAIN].because == (Property.ADMISSIBLE,)
 
 
-@pytest.mark.obligation("V2", "each condition of coverage within a distance is necessary")
+@pytest.mark.obligation("V2", "each condition of coverage within a distance is necessary", method="ablation")
 class TestAblation:
     """What each check refuses passes when the check is taken out."""
 

@@ -60,7 +60,9 @@ def naive_centres(mesh: Triangulation) -> FloatArray:
     return found
 
 
-@pytest.mark.obligation("D1", "circumcentres are rounded once: each coordinate is the nearest double, ties to even")
+@pytest.mark.obligation(
+    "D1", "circumcentres are rounded once: each coordinate is the nearest double, ties to even", method="property-based"
+)
 class TestCircumcentres:
     """Each coordinate is the double nearest to the exact one, for any finite input; beyond the doubles, an infinity."""
 
@@ -129,7 +131,9 @@ def dual_faults(mesh: Triangulation, duals: IntArray, directions: FloatArray) ->
     return faults
 
 
-@pytest.mark.obligation("D2", "edge i is Voronoi edge i turned counterclockwise; triangle j is centre j")
+@pytest.mark.obligation(
+    "D2", "edge i is Voronoi edge i turned counterclockwise; triangle j is centre j", method="property-based"
+)
 class TestDualEdges:
     """Row i has the triangles on the left and on the right of edge i; rays point straight away from the hull."""
 
@@ -212,7 +216,9 @@ def structure_faults(diagram: Voronoi) -> list[str]:
 
 
 @pytest.mark.obligation(
-    "D3", "each Voronoi cell is what is nearest to its site, exactly; cocircular points have one vertex"
+    "D3",
+    "each Voronoi cell is what is nearest to its site, exactly; cocircular points have one vertex",
+    method="property-based",
 )
 class TestCells:
     """The cells are those of brute force in fractions; each ridge is in the two cells of its sites, in opposite

@@ -79,7 +79,11 @@ def clip_faults(cells: Cells) -> list[str]:
     return faults
 
 
-@pytest.mark.obligation("D4", "clipped cells are exactly cell and window; their areas add up to the window's, exactly")
+@pytest.mark.obligation(
+    "D4",
+    "clipped cells are exactly cell and window; their areas add up to the window's, exactly",
+    method="property-based",
+)
 class TestWindow:
     """The polygons are those of brute force in fractions, each corner rounded once, each edge with its neighbour; the
     window may pass through sites and vertices and along ridges."""
@@ -227,7 +231,9 @@ def domain_faults(mesh: Triangulation, cells: Cells) -> list[str]:
     return faults
 
 
-@pytest.mark.obligation("D5", "in a conforming domain every circumcentre is inside, and the cells cover it exactly")
+@pytest.mark.obligation(
+    "D5", "in a conforming domain every circumcentre is inside, and the cells cover it exactly", method="property-based"
+)
 class TestDomain:
     """The cells of a boundary conforming triangulation tile its domain, exactly; others are refused by name."""
 

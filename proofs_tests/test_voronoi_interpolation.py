@@ -54,7 +54,9 @@ def largest_error(mesh: Triangulation, queries: FloatArray, found: NaturalNeighb
     return worst
 
 
-@pytest.mark.obligation("D6", "Sibson's coordinates are the parts of the stolen cell, to 50 bits")
+@pytest.mark.obligation(
+    "D6", "Sibson's coordinates are the parts of the stolen cell, to 50 bits", method="property-based"
+)
 class TestCoordinates:
     """The coordinates are the areas that brute force in fractions finds; they add up to 1, and to the point."""
 
@@ -119,7 +121,9 @@ def deviation(points: FloatArray, values: FloatArray, plane: FloatArray, queries
 
 
 @pytest.mark.obligation(
-    "D7", "the interpolant takes the data, reproduces linear functions, stays within its neighbours"
+    "D7",
+    "the interpolant takes the data, reproduces linear functions, stays within its neighbours",
+    method="property-based",
 )
 class TestInterpolation:
     """It takes the values at the sites, is linear for linear values, continuous, and never beyond the values around."""
@@ -195,7 +199,9 @@ class TestInterpolation:
                 interpolate(sites, values, at)  # type: ignore[arg-type]  # bad on purpose
 
 
-@pytest.mark.obligation("D8", "Lloyd's energy never grows; it rests where every site is the centroid of its cell")
+@pytest.mark.obligation(
+    "D8", "Lloyd's energy never grows; it rests where every site is the centroid of its cell", method="property-based"
+)
 class TestLloyd:
     """The energy falls from step to step, points stay in the window, and a centroidal diagram stays as it is."""
 
@@ -247,7 +253,9 @@ class TestLloyd:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "Voronoi diagrams, clipping, interpolation and relaxation: compiled equals interpreted")
+@pytest.mark.obligation(
+    "J1", "Voronoi diagrams, clipping, interpolation and relaxation: compiled equals interpreted", method="bit for bit"
+)
 class TestLanes:
     """Diagrams, clipped cells, natural neighbours and relaxation have the same bits compiled and interpreted."""
 
