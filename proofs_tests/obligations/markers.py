@@ -1,40 +1,66 @@
-"""The markers, read out of the sources of the tests."""
+"""The markers, read out of the sources of the tests, so that nothing needs to be imported or run."""
 
 import ast
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from proofs_tests.obligations.method import Method
 
-__all__ = ["Obligation", "collect", "table"]
+__all__ = ["Control", "MarkerError", "Obligation", "collect"]
 
 HERE = Path(__file__).resolve().parent.parent
 ROOT = HERE.parent
 
 
-@dataclass(frozen=True, order=True)
-class Obligation:
-    """One marker on one test class, or test function."""
+class MarkerError(ValueError):
+    """A marker that says too little: where it stands, and what is missing."""
 
-    id: tuple[str, int]
-    statement: str
-    file: str
+
+@dataclass(frozen=True)
+class Control:
+    """A test method with ``control`` in its name, and the first line of its docstring: the fault that it seeds."""
+
     name: str
+    fault: str
+
+
+@dataclass(frozen=True)
+class Obligation:
+    """One marker on one test class."""
+
+    id: str
+    statement: str
+    method: Method
+    place: str  # file::class, as pytest names it
     line: int
-    controls: int
-    method: Method | None
+    controls: tuple[Control, ...]
+    control_in: str  # the class, or file::class, whose controls are those of this class too
 
     @classmethod
-    def of(cls, node: ast.ClassDef | ast.FunctionDef, call: ast.Call, path: Path) -> "Obligation":
-        identifier, statement = (ast.literal_eval(argument) for argument in call.args)
-        letters, digits = re.fullmatch(r"([A-Z]+)(\d+)", identifier).groups()  # type: ignore[union-attr]  # or fail
-        where = path.relative_to(ROOT).as_posix()
-        controls = sum(isinstance(inner, ast.FunctionDef) and "control" in inner.name for inner in ast.walk(node))
-        keywords = {keyword.arg: ast.literal_eval(keyword.value) for keyword in call.keywords}
-        method = Method(keywords["method"]) if "method" in keywords else None
-        return cls((letters, int(digits)), statement, where, node.name, node.lineno, controls, method)
+    def of(cls, node: ast.ClassDef, call: ast.Call, path: Path) -> "Obligation":
+        place = f"{path.relative_to(ROOT).as_posix()}::{node.name}"
+        try:
+            identifier, statement = (ast.literal_eval(argument) for argument in call.args)
+            keywords = {str(keyword.arg): ast.literal_eval(keyword.value) for keyword in call.keywords}
+            method = Method(keywords.pop("method"))
+            control_in = keywords.pop("control_in", "")
+            if keywords:
+                raise ValueError(f"unknown: {', '.join(keywords)}")
+        except (ValueError, KeyError) as error:
+            raise MarkerError(
+                f"{place}, line {node.lineno}: the marker is obligation(id, statement, method=, control_in=), all"
+                f" literals, control_in optional, method one of {', '.join(Method)}: {error}"
+            ) from error
+        if control_in and "::" not in control_in:
+            control_in = f"{path.relative_to(ROOT).as_posix()}::{control_in}"
+        return cls(identifier, statement, method, place, node.lineno, tuple(_controls(node)), control_in)
+
+
+def _controls(node: ast.ClassDef) -> Iterator[Control]:
+    for inner in node.body:
+        if isinstance(inner, ast.FunctionDef) and inner.name.startswith("test") and "control" in inner.name:
+            yield Control(inner.name, (ast.get_docstring(inner) or "").partition("\n\n")[0].replace("\n", " "))
 
 
 def _marker(decorator: ast.expr) -> ast.Call | None:
@@ -44,30 +70,13 @@ def _marker(decorator: ast.expr) -> ast.Call | None:
 
 
 def collect(folder: Path = HERE) -> list[Obligation]:
-    """Return the obligations of all test files, sorted."""
-    return sorted(found for path in sorted(folder.rglob("test_*.py")) for found in _of_file(path))
+    """Return the obligations of all test files in ``folder`` and below, in the order of files and lines."""
+    return [found for path in sorted(folder.rglob("test_*.py")) for found in _of_file(path)]
 
 
 def _of_file(path: Path) -> Iterator[Obligation]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef):
             for decorator in node.decorator_list:
                 if call := _marker(decorator):
                     yield Obligation.of(node, call, path)
-
-
-def table(obligations: list[Obligation]) -> str:
-    """Return the page, in Markdown."""
-    lines = [
-        "# Obligations",
-        "",
-        "Each line is a statement that a test class proves or tests, and the number of its negative controls: seeded",
-        "faults that the same check must refuse. Made by `python -m proofs_tests.obligations`.",
-        "",
-        "| id | statement | where | controls |",
-        "|---|---|---|---|",
-    ]
-    lines += [
-        f"| {''.join(map(str, o.id))} | {o.statement} | `{o.file}` {o.name} | {o.controls or ''} |" for o in obligations
-    ]
-    return "\n".join(lines) + "\n"
