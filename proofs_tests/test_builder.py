@@ -61,6 +61,7 @@ class TestEditing:
 
     @pytest.mark.parametrize("fault", ["unflipped", "unconstrained", "half a segment", "forgotten group"])
     def test_control_a_seeded_fault_is_found(self, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Edges left unflipped, segments left unconstrained or inserted by half, a group of edits forgotten."""
         name, faulty = FAULTS[fault]
         real = getattr(module, name)
         monkeypatch.setattr(module, name, lambda draft, *rest: faulty(real, draft, *rest))

@@ -35,6 +35,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.mesh_digest", NUMBA_DISABLE_JIT=disable) == here
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         points = mesh_digest.inputs()["uniform"]
         moved = points.copy()
         moved[7, 0] = np.nextafter(moved[7, 0], 2.0)

@@ -30,6 +30,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.refine_digest", NUMBA_DISABLE_JIT="1") == here
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         domain = refine_digest.domains()["star"]
         points = domain.points.copy()
         points[5, 0] = np.nextafter(points[5, 0], 9.0)

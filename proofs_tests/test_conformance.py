@@ -75,6 +75,7 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("name", ["right", "noisy"])
     def test_control_no_fault_is_found_where_there_is_none(self, name: str) -> None:
+        """None: a right mesher, and one that prints, are acquitted."""
         result = check(f"{PLACE}:{name}", max_size=12, max_examples=60, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
@@ -82,6 +83,7 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_has_none(self, task: Task) -> None:
+        """None: exactmesh is acquitted."""
         result = check("exactmesh", kind=task, max_size=20, max_examples=40, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
@@ -115,6 +117,7 @@ class TestCounterexamples:
         assert again.outcome(law) is ruling.outcome
 
     def test_control_a_larger_input_is_not_the_smallest(self) -> None:
+        """An input of ten points, which shows the same fault as the smallest."""
         result = retry(
             f"{PLACE}:drops_a_point", [(0, 0), (1, 0), (0, 1), (5, 5), (7, 3), (2, 9), (3, 3), (8, 1), (9, 9), (4, 0)]
         )
@@ -183,6 +186,7 @@ class TestCorpus:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_does_not_fail(self, task: Task) -> None:
+        """None: exactmesh is acquitted on the same inputs."""
         cases = [case for case in CORPUS.values() if case.task is task and case.name != "9"]
         with MesherProcess(resolved("exactmesh", task)[0], Limits(60.0), segments=task is not Task.POINTS) as process:
             trial = Trial(process, task, "ccw")

@@ -291,6 +291,7 @@ class TestCorpus:
             assert self.verified(PSLG(*bundle(seed))), seed
 
     def test_control_a_flipped_edge_is_found(self) -> None:
+        """A segment that the mesh does not have."""
         mesh = constrained_delaunay(PSLG(*bundle(0)), carve=False, crossings="split")
         assert verify(mesh.points, mesh.triangles, segments=mesh.segments).ok
         assert not verify(mesh.points, mesh.triangles, segments=[(int(mesh.hull[0]), int(mesh.hull[2]))]).ok
@@ -420,6 +421,7 @@ class TestFaultsAreFound:
     """The comparison with brute force rejects seeded faults: run in a child process, interpreted."""
 
     def test_control_faults(self) -> None:
+        """Lines of the insertion changed, one by one; each makes the enumeration disagree, none does not."""
         child = subprocess.run(
             [sys.executable, "-c", FAULTY],
             env={**os.environ, "NUMBA_DISABLE_JIT": "1"},

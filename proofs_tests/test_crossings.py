@@ -76,6 +76,7 @@ class TestPairs:
         assert found(through, segments) == oracle.true_pairs(through.tolist(), segments)
 
     def test_control_a_pair_left_out_is_noticed(self) -> None:
+        """A pair of crossing segments left out; overlaps, touches and common ends taken for each other."""
         points, segments = SEVEN.tolist(), [(0, 1), (2, 3), (4, 5)]
         assert found(points, segments[:2]) != oracle.true_pairs(points, segments)
         assert oracle.true_pairs([(0, 0), (2, 0), (1, 0), (3, 0)], [(0, 1), (2, 3)]) == [(0, 1, oracle.OVERLAP)]
@@ -113,6 +114,7 @@ class TestRounding:
         assert [tuple(cell) for cell in cells] == [oracle.pixel(p, grid) for p in crossings]
 
     def test_control_a_neighbour_is_not_the_nearest(self) -> None:
+        """The double beside the nearest one."""
         exact = Fraction(1, 3)
         assert oracle.is_nearest(1 / 3, exact)
         assert not oracle.is_nearest(float(np.nextafter(1 / 3, 1.0)), exact)
@@ -222,6 +224,7 @@ class TestArrangement:
         assert not oracle.is_planar(vertices, sorted(pieces))
 
     def test_control_wrong_arrangements_are_noticed(self) -> None:
+        """Segments left unsplit, a point moved, a chain too far away, a row of the incidence lost."""
         square = PSLG([(0, 0), (4, 4), (0, 4), (4, 0), (2, 2)], [(0, 1), (2, 3)])
         good = arrange(square)
         assert faults(good) == []
@@ -275,6 +278,7 @@ class TestSnapping:
         assert oracle.is_planar(whole.points.tolist(), pieces_of(chains).ends.tolist())
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
+        """Pixels beside the segment, and corners that do not belong to a pixel."""
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
         assert oracle.segment_meets_pixel(slanted, (5, 0), (1.0, 1.0))
         assert not oracle.segment_meets_pixel(slanted, (4, 1), (1.0, 1.0))
@@ -341,6 +345,7 @@ class TestLocality:
         assert not any(is_moved(arranged)[n:])
 
     def test_control_all_snapped_moves_far_points(self) -> None:
+        """Everything snapped, wherever it is."""
         (points, pairs), far = bundle(26), [(0.1, 7.3), (3.3, 0.3)]
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(planar, "_SNAPS", 0)
@@ -389,6 +394,7 @@ class TestNeighbourhood:
             assert near == sorted(set(near))
 
     def test_control_one_left_out(self) -> None:
+        """A neighbour left out."""
         begins, ends = np.array([(0.0, 0.0), (1.0, 1.0), (3.0, 3.0)]), np.array([(1.0, 1.0), (2.0, 2.0), (4.0, 4.0)])
         assert self.missing(begins, ends, 0.0, [0], [0]) == [1]
         assert self.missing(begins, ends, 1.0, [0], [0]) == [1, 2]

@@ -133,6 +133,7 @@ class TestFaultsAreFound:
     """The comparison above rejects an insertion with a seeded fault: run in a child process, interpreted."""
 
     def test_control_faults(self) -> None:
+        """Lines of the insertion changed, one by one; each makes the enumeration disagree, none does not."""
         child = subprocess.run(
             [sys.executable, "-c", FAULTY],
             env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
@@ -276,6 +277,7 @@ class TestManyPoints:
             assert delaunay(points[order], seed=seed).canonical() == canonical
 
     def test_control_a_flipped_edge_is_noticed(self) -> None:
+        """One edge flipped."""
         mesh = delaunay(STRUCTURED["uniform"])
         surface = mesh.quad_edge()
         for edge in surface.edges():

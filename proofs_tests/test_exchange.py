@@ -74,6 +74,7 @@ class TestRoundTrip:
         assert bits(pslg.points) == bits(PSLG.from_rings(rings).points)
 
     def test_control_lost_digits_are_caught(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Coordinates rounded to fifteen places."""
         pslg = PSLG.from_rings([[(0.1 + 0.2, 0.0), (1 / 3, 1.0), (0.0, 1.0)]])
         assert PSLG.from_geojson(pslg.to_geojson()) == pslg
         monkeypatch.setattr(geojson_module, "_closed", lambda ring: np.round([*ring, ring[0]], 15).tolist())

@@ -53,6 +53,7 @@ class TestSeeds:
         assert again(mesh).canonical() == mesh.canonical()
 
     def test_control_without_seeds_the_hole_is_filled(self) -> None:
+        """The seeds left out."""
         mesh = constrained_delaunay(PSLG.from_rings([square(0, 0, 9), square(2, 2, 5)]))
         filled = again(replace(mesh, holes=np.empty((0, 2))))
         assert again(mesh).statistics().area == mesh.statistics().area == 56.0

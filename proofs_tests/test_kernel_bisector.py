@@ -102,6 +102,7 @@ class TestBisectors:
         assert lies > 20
 
     def test_control_without_its_bound_the_filter_lies(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The bound of the filter set to zero."""
         random = np.random.default_rng(0)
         function = getattr(nearer_adaptive, "py_func", nearer_adaptive)
         monkeypatch.setattr(bisector, "_NEARER_BOUND", 0.0)

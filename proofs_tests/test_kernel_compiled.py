@@ -79,6 +79,7 @@ class TestLanes:
         assert in_a_child("-c", code) == f"{expected}1 0\n"
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One unit in the last place, and the sign of a zero."""
         one, other, zero = lane_digest.Digest(), lane_digest.Digest(), lane_digest.Digest()
         one.add(1.0, 0.0)
         other.add(1.0 + 2.0**-52, 0.0)
@@ -126,6 +127,7 @@ class TestMachineCode:
 
     @pytest.mark.skipif(not HAS_FUSED, reason="this processor has no fused multiply-add")
     def test_control_contraction_is_seen(self) -> None:
+        """Products compiled with contraction."""
         pair = (numba.types.float64, numba.types.float64)
         assert FUSED.findall(machine_code(expansions.two_product, pair, fastmath={"contract"}))
         assert FUSED.findall(machine_code(doubledouble.dd_multiply, pair * 2, fastmath={"contract"}))

@@ -73,6 +73,7 @@ class TestExactConstructions:
         return between and oracle.orient2d(p, q, crossing) == 0
 
     def test_control_rounded_points_are_refused(self) -> None:
+        """The circumcentre and the crossing rounded to doubles."""
         corners = ((0.0, 0.0), (1.0, 0.0), (0.3, 0.7))
         centre = rounded(circumcentre(*corners))
         assert not self.is_equidistant((Fraction(centre.x), Fraction(centre.y)), corners)
@@ -127,6 +128,7 @@ class TestRounding:
             assert self.is_nearest(rounded((mpq(exact.numerator, exact.denominator), mpq(0))).x, exact)
 
     def test_control_a_neighbour_is_refused(self) -> None:
+        """The double beside the nearest one, and a tie to odd."""
         assert self.is_nearest(1.0, Fraction(1))
         assert not self.is_nearest(math.nextafter(1.0, 2.0), Fraction(1))
         assert not self.is_nearest(1.0 + 2.0**-52, 1 + Fraction(2) ** -53)

@@ -189,6 +189,7 @@ class TestExpansions:
         ],
     )
     def test_control_seeded_faults_are_found(self, routine: str, function: str, edit: tuple[str, str]) -> None:
+        """Orders, conditions and components of the source changed, one by one."""
         faulty = checkers(MiniFloat(PRECISION, edits={function: edit}), Backend.PYTHON)[routine]
         e, ne = expansions(PRECISION, 6, 2)
         if routine == "scale":
@@ -198,6 +199,7 @@ class TestExpansions:
             assert faulty(e[few], ne[few], e[some], ne[some], np.zeros(64)) > 0
 
     def test_control_a_result_that_overlaps_is_refused(self) -> None:
+        """Components that overlap, are zero, or do not add up."""
         assert is_exact_expansion(np.array([1.0, 12.0]), 2, 13.0)
         assert not is_exact_expansion(np.array([1.0, 12.0]), 1, 13.0)
         assert not is_exact_expansion(np.array([3.0, 6.0]), 2, 9.0)

@@ -77,6 +77,7 @@ class TestNumberTypes:
         assert ek.orient2d(*points.astype(np.float32)) == 1
 
     def test_control_rounding_to_doubles_gives_another_sign(self) -> None:
+        """A coordinate of 54 bits rounded to a double."""
         a, b, c = (0, 0), (2**53, 2**53), (2**53 + 1, 2**53)
         assert ek.orient2d(a, b, c) == -1
         assert ek.orient2d(a, b, (float(c[0]), float(c[1]))) == 0
@@ -179,6 +180,7 @@ class TestArrays:
         assert exact_doubles(x[:1]).tolist() == [[1.0, 1.0]]
 
     def test_control_numpy_rounds_in_silence(self) -> None:
+        """The conversion that numpy does by itself: 2^53 + 1 becomes 2^53."""
         assert np.asarray([(2**53 + 1, 0.5)])[0, 0] == 2.0**53
 
     def test_large_doubles_in_a_list_pass(self) -> None:
@@ -256,6 +258,7 @@ class TestVertexIndices:
             vertex_indices(bad)
 
     def test_control_a_cast_wraps_in_silence(self) -> None:
+        """The cast that numpy does by itself: 2^32 + 1 becomes 1."""
         assert np.array([2**32 + 1]).astype(np.int32)[0] == 1
 
 

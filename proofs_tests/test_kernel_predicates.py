@@ -74,16 +74,19 @@ class TestExactSigns:
         assert in_contexts(incircle_perturbed_adaptive, points) == {exact}
 
     def test_control_the_published_filter_lies(self) -> None:
+        """The published filter, without a guard against underflow."""
         assert oracle.orient2d(*PUBLISHED_LIE) == -1
         assert orient2d_filter(ORIENT2D_BOUND, *np.ravel(PUBLISHED_LIE).tolist()) == 1
 
     def test_control_an_unguarded_expansion_lies(self) -> None:
+        """Expansions used outside of their window."""
         unguarded = guarded_context()._replace(orient2d_bound=np.finfo(float).max)
         tiny = ((5e-324, 0.0), (0.0, 5e-324), (0.0, 0.0))
         assert orient2d_adaptive(unguarded, *np.ravel(tiny).tolist()) == 0
         assert ek.orient2d(*tiny) == oracle.orient2d(*tiny) == 1
 
     def test_control_rounded_determinants_miss_what_the_stages_find(self) -> None:
+        """The determinant in plain doubles."""
         p = ((1.0 + 2.0**-52, 1.0), (1.0, 1.0 - 2.0**-52), (0.0, 0.0))
         (ax, ay), (bx, by), _ = p
         assert ax * by - ay * bx == 0.0
@@ -164,6 +167,7 @@ class TestStages:
         assert context.counts.sum(axis=0)[stage] == context.counts.sum() == 1
 
     def test_control_the_filter_leaves_what_later_stages_decide(self) -> None:
+        """The filter alone: it leaves open what it is not pinned for."""
         filters: dict[Callable[..., object], tuple[Callable[..., int], float]] = {
             ek.orient2d_staged: (orient2d_filter, ORIENT2D_BOUND),
             ek.diametral_staged: (diametral_filter, ORIENT2D_BOUND),

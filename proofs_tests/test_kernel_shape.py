@@ -81,6 +81,7 @@ class TestShapeConstants:
             assert largest_needed(worst) + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
 
     def test_control_half_of_it_is_too_little_for_angles(self) -> None:
+        """Half the constant."""
         assert largest_needed(self.cross * self.trigonometric) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
 
 
@@ -120,6 +121,7 @@ class TestTrigonometry:
             assert sine == round(math.sin(angle) * scale)
 
     def test_control_a_rounded_pi_is_noticed(self) -> None:
+        """The cosine of the mathematics library, of degrees by a rounded pi."""
         low, high = shape_oracle.cosine_interval(Fraction(20), 128)
         assert not low <= Fraction(math.cos(math.radians(20.0))) <= high
 
@@ -178,6 +180,7 @@ class TestAngles:
             assert ek.angle_above(order, 2 * degrees) == shape_oracle.angle_above(points, 2 * degrees)
 
     def test_control_a_filter_without_a_bound_lies(self) -> None:
+        """The bound of the filter set to zero."""
         rng = np.random.default_rng(4)
         lies = 0
         for _ in range(2000):
@@ -190,6 +193,7 @@ class TestAngles:
         assert lies > 0
 
     def test_control_the_bound_rounded_to_radians_is_wrong(self) -> None:
+        """Sine and cosine of 45 degrees in doubles, which differ."""
         below, above = math.sin(math.radians(45.0)), math.cos(math.radians(45.0))  # both near the square root of 1/2
         rounded = AngleBound(45.0, below, 0.0, above, 0.0, True)
         assert below < above
@@ -254,6 +258,7 @@ class TestMeasures:
         assert ek.length_above(huge[:2], 1.7e308)
 
     def test_control_filters_without_a_bound_lie(self) -> None:
+        """The bounds of the filters set to zero."""
         rng = np.random.default_rng(4)
         areas = lengths = 0
         for ux, uy, vx, vy in rng.random((2000, 4)).tolist():

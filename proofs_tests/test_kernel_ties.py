@@ -51,6 +51,7 @@ class TestPerturbedSign:
         assert ties > 150
 
     def test_control_other_predicates_are_refused(self) -> None:
+        """The plain incircle, and a perturbation that ignores the order of the points."""
         square = ((0, 0), (1, 0), (1, 1), (0, 1))
         assert not is_antisymmetric(incircle, square)
         assert not is_antisymmetric(ignoring_the_order, square)
@@ -135,9 +136,12 @@ class TestUniqueTriangulation:
 
     @pytest.mark.parametrize("predicate", [incircle, ignoring_the_order])
     def test_control_unbroken_ties_leave_holes_or_overlaps(self, predicate: Predicate) -> None:
+        """The plain incircle, and a perturbation that ignores the order of the points."""
         assert not covers_the_hull_once(GRID_3, predicate)
 
     def test_control_ties_broken_the_other_way_overlap(self) -> None:
+        """Every tie broken to the outside."""
+
         def always_outside(a: Cell, b: Cell, c: Cell, d: Cell) -> int:
             return int(incircle(a, b, c, d)) or -1
 

@@ -56,6 +56,7 @@ class TestSums:
 
     @pytest.mark.parametrize("precision", PRECISIONS)
     def test_control_fast_two_sum_without_its_condition_fails(self, precision: int) -> None:
+        """fast_two_sum on pairs whose first is the smaller."""
         a, b = every_pair(precision)
         assert not is_error_free(derived("fast_two_sum", MiniFloat(precision)), a + b, a, b, precision)
 
@@ -69,6 +70,7 @@ class TestSums:
         ],
     )
     def test_control_wrong_formulas_fail(self, name: str, edit: tuple[str, str]) -> None:
+        """Terms of the formulas dropped or exchanged, one by one."""
         a, b = every_pair(5)
         exact = a + b if name == "two_sum" else a - b
         assert not is_error_free(derived(name, MiniFloat(5, edits={name: edit})), exact, a, b, 5)
@@ -107,6 +109,7 @@ class TestProduct:
 
     @pytest.mark.parametrize("splitter", [5.0, 9.0, 33.0, 65.0])
     def test_control_a_wrong_splitter_fails(self, splitter: float) -> None:
+        """Splitters that are too small or too large."""
         mini = MiniFloat(7, constants={"SPLITTER": splitter})
         a, b = self.pairs(7)
         assert not is_error_free(derived("two_product", mini), a * b, a, b, 7)
@@ -114,6 +117,7 @@ class TestProduct:
 
     @pytest.mark.parametrize("edit", [(" - a_high * b_low", ""), ("a_low * b_low - error", "-error")])
     def test_control_a_dropped_partial_product_fails(self, edit: tuple[str, str]) -> None:
+        """A partial product dropped."""
         a, b = self.pairs(7)
         mini = MiniFloat(7, edits={"two_product": edit})
         assert not is_error_free(derived("two_product", mini), a * b, a, b, 7)

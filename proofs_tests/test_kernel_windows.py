@@ -104,6 +104,7 @@ class TestContext:
         assert unit == math.inf if expected is None else Fraction(unit) == expected
 
     def test_control_a_unit_that_is_too_large_is_noticed(self) -> None:
+        """The common unit of fewer numbers, which is too large."""
         assert largest_unit([1.0, 2.0**80]) == 1
         assert largest_unit([2.0**80]) == 2**80
         with pytest.raises(AssertionError):
@@ -231,6 +232,7 @@ class TestGridStage:
             assert set(stages.tolist()) <= {int(ek.Stage.FILTER), int(ek.Stage.GRID)}
 
     def test_control_numbers_without_a_grid(self) -> None:
+        """A difference of 4097 units, and a number off the grid."""
         assert on_common_grid(1.0, 2.0, 4095.0, -7.0, 0.0, 0.5 * 2)
         assert not on_common_grid(1.0, 2.0, 4097.0, -7.0, 0.0, 1.0)
         assert not on_common_grid(1.0, 2.0**-13, 0.0, 0.0, 0.0, 1.0)
@@ -244,6 +246,7 @@ class TestGridStage:
         assert stage in (ek.Stage.FILTER, ek.Stage.GRID)
 
     def test_control_doubles_are_not_exact_on_a_larger_grid(self) -> None:
+        """A limit of 2^30 units in the place of 4096."""
         n = 2.0**27
         coordinates = [(n + 1.0, n), (n, n - 1.0), (0.0, 0.0)]
         too_wide = make_context(np.array(coordinates))._replace(grid_limit=2.0**30)

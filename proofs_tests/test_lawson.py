@@ -356,6 +356,7 @@ class TestConstrained:
             lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(1, 1)])
 
     def test_control_the_segment_is_what_keeps_an_edge(self) -> None:
+        """The segment left out."""
         points, start = [(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)]
         free, kept = lawson(points, start), lawson(points, start, segments=[(2, 0)])
         assert (free.work.flips, kept.work.flips) == (1, 0)

@@ -260,6 +260,7 @@ class TestDuplicates:
         assert order.tolist() == sorted(range(len(points)), key=lambda i: (*points[i], i))
 
     def test_control_an_order_with_a_flaw_is_caught(self) -> None:
+        """An order by x alone."""
         points = np.array([(0.0, 1.0), (0.0, 0.0), (0.0, 1.0)])
         assert first_of_each(points, lexicographic_order(points)).tolist() == [0, 1, 0]
         assert first_of_each(points, np.argsort(points[:, 0], kind="stable").astype(np.int32)).tolist() != [0, 1, 0]

@@ -212,6 +212,7 @@ class TestCheck:
     """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
 
     def test_control_every_corruption(self, states: list[IntArray]) -> None:
+        """Every entry of every state replaced by every other value, holes and out of range included."""
         labels = np.zeros(4, dtype=np.int32)
         for ring in states[1]:
             for q in range(len(ring)):
@@ -285,6 +286,7 @@ class TestDerivedOperations:
                         assert {f.left for f in side.face()} == {side.left}
 
     def test_control_a_wrong_swap_is_seen(self) -> None:
+        """A swap twice, which turns the edge round."""
         surface = next(small_surfaces())
         index = inner_edges(surface)[0]
         ours, theirs = copied(surface), copied(surface)
@@ -494,6 +496,7 @@ class TestModel:
         run_state_machine_as_test(Model, settings=settings(max_examples=100, stateful_step_count=30))
 
     def test_control_lost_splice(self) -> None:
+        """A splice that the model does and the quad-edge does not."""
         machine = Model()
         machine.make()
         machine.make()
@@ -502,6 +505,7 @@ class TestModel:
         assert rejected(machine.is_the_model)
 
     def test_control_corrupt_ring(self) -> None:
+        """One entry of a ring overwritten."""
         machine = Model()
         machine.make()
         machine.surface.ring_of(QuarterEdge(0))[0] = 2
@@ -540,12 +544,14 @@ class TestFromTriangles:
         ],
     )
     def test_control_bad_corners(self, triangles: list[tuple[int, int, int]], culprits: tuple[int, ...]) -> None:
+        """Corners out of range or repeated, an edge used twice in one direction, a triangle twice."""
         with pytest.raises(TopologyError) as raised:
             QuadEdge.from_triangles(triangles)
         assert raised.value.indices == culprits
 
     @pytest.mark.parametrize("entry", [0, 1, 2, -2])
     def test_control_bad_neighbors(self, entry: int) -> None:
+        """Every entry of the neighbors replaced by every other one; a row missing."""
         triangles = [(0, 1, 2), (0, 2, 3)]
         good = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
         assert len(QuadEdge.from_triangles(triangles, good)) == 5
@@ -635,6 +641,7 @@ class TestTypedHandles:
     mix them."""
 
     def test_control_mypy_rejects_just_the_wrong_lines(self, tmp_path: Path) -> None:
+        """Lines that mix primal and dual, or vertices and faces."""
         script = tmp_path / "snippet.py"
         script.write_text(SNIPPET)
         root = Path(__file__).parents[1]

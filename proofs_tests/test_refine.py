@@ -192,11 +192,13 @@ class TestMesh:
         ],
     )
     def test_control_corrupted(self, corrupt: Callable[[Output], Output]) -> None:
+        """Triangles lost, doubled or turned, a segment or a point that is not there."""
         output = output_of(refine(PLATE, max_area=1.0), PLATE)
         assert not refine_oracle.mesh_faults(output, Fraction(32))
         assert refine_oracle.mesh_faults(corrupt(output), Fraction(32))
 
     def test_control_a_flipped_edge(self) -> None:
+        """The other diagonal."""
         graph = PSLG([(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)], [(0, 1), (1, 2), (2, 3), (3, 0)])
         points = [*map(tuple, graph.points.tolist())]
         segments = [*map(tuple, graph.segments.tolist())]
@@ -225,6 +227,7 @@ class TestAccount:
         assert not steiner_faults(refined(case), start, case)
 
     def test_control_a_missing_exception_is_noticed(self) -> None:
+        """An exception left out, a reason that does not apply, radii halved."""
         case = Case(PLATE, 20.0, 0.3, Steiner.ANYWHERE, 3, False)
         done = refined(case)
         output = output_of(done, PLATE)
@@ -288,6 +291,7 @@ class TestConforming:
             assert not refine_oracle.encroached(output_of(done, domain))
 
     def test_control_without_it_segments_are_encroached(self) -> None:
+        """The refinement without ``conforming``."""
         tent = PSLG([(0.0, 0.0), (12.0, 0.0), (6.0, 4.0)], [(0, 1), (1, 2), (2, 0)])
         assert refine_oracle.encroached(output_of(refine(tent, min_angle=0), tent))
         done = refine(tent, min_angle=0, conforming=True)

@@ -54,6 +54,7 @@ class TestCarve:
         assert area(refined) == area(domain)
 
     def test_control_the_domains_differ(self) -> None:
+        """Carving turned off: the area is another."""
         assert area(refine(PLATE).triangulation) == 11
         assert area(refine(PLATE, carve=False).triangulation) == 12
 
@@ -83,6 +84,7 @@ class TestSize:
             assert found.triangles.tobytes() == expected.triangles.tobytes()
 
     def test_control_without_it_edges_are_longer(self) -> None:
+        """The size left out."""
         assert longest_edge_squared(refine(PLATE).triangulation) > Fraction(0.75) ** 2
 
     @pytest.mark.parametrize("size", [0, -1.0, float("nan"), True, "0.5", np.ones(3)])

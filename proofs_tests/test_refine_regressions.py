@@ -58,6 +58,7 @@ class TestExcuses:
         assert not any(angle_below([tuple(p) for p in corner], 30) for corner in corners.tolist())
 
     def test_control_a_needle_has_some(self) -> None:
+        """A domain that has a small angle."""
         done = refine(PSLG([(0, 0), (9, 0), (9, 1)], [(0, 1), (1, 2), (2, 0)]), min_angle=30)
         assert set(done.reasons.tolist()) == {Reason.SMALL_INPUT_ANGLE}
 
@@ -117,6 +118,7 @@ class TestLeastEdge:
             assert dx * dx + dy * dy >= Fraction(1, 4)
 
     def test_control_equal(self) -> None:
+        """A length that is the least edge exactly."""
         square = PSLG([(0, 0), (4, 0), (4, 4), (0, 4)], RING)
         mesh = refine(
             square, unsuitable=lambda corners, _: np.ones(len(corners), dtype=bool), min_edge=0.5
@@ -138,6 +140,7 @@ class TestDisplacement:
         assert 0.0 < done.displacement < 1e-14 * scale
 
     def test_control_exact(self) -> None:
+        """A domain whose points are not rounded."""
         assert refine(PSLG.from_rings([[(0, 0), (4, 0), (4, 2), (0, 1)]]), min_angle=33).displacement == 0.0
 
 

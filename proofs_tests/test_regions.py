@@ -373,6 +373,7 @@ class TestBoundary:
         ids=["one missing", "turned round", "begun elsewhere", "two as one"],
     )
     def test_control_damaged(self, damage: Callable[[list[list[int]]], list[list[int]]]) -> None:
+        """A loop missing, turned round, begun elsewhere, two joined."""
         mesh = rings_domain(RINGS["four holes around an island"][0])
         loops = [loop.tolist() for loop in mesh.boundary()]
         check_loops(mesh, loops)

@@ -244,6 +244,7 @@ class TestCovered:
         assert verify(done.triangulation.points, done.triangulation.triangles, domain=domain).ok
 
     def test_control_full_precision(self) -> None:
+        """The same domain, not snapped: it is not covered exactly."""
         domain = PSLG.from_rings([[(0, 0), (0.7, 0.1), (0.3, 0.9)]])
         assert refine(domain, max_area=0.001).displacement_squared > 0
 

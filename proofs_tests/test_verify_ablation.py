@@ -102,6 +102,7 @@ class TestHullConditionsAreNecessary:
 
     @pytest.mark.parametrize(("points", "triangles"), [(SQUARE, HALVES), (KITE, [(0, 1, 3), (1, 2, 3)])])
     def test_control_nothing_is_broken(self, points: Points, triangles: list[Triangle]) -> None:
+        """None: sound meshes break no condition."""
         assert not broken_of_hull(oracles.rationals(points), triangles)
         assert verify(points, triangles).ok
 
@@ -205,6 +206,7 @@ class TestDomainConditionsAreNecessary:
         assert report.verdict(Property.ADMISSIBLE) is Verdict.FAILS
 
     def test_control_nothing_is_broken(self) -> None:
+        """None: a sound mesh breaks no condition."""
         exact = oracles.rationals(KITE)
         assert not broken_of_domain(exact, HALVES, boundary_of(HALVES), [(0, 2)])
         assert verify(KITE, HALVES, segments=[(0, 2)]).ok

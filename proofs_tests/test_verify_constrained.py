@@ -278,6 +278,7 @@ class TestEverySet:
             assert not disagreements(truth, triangles), triangles
 
     def test_control_brute_force_accepts_and_rejects_each_property(self) -> None:
+        """Sets of triangles on which each property fails, and others on which it holds."""
         seen: dict[Property, set[bool]] = {}
         for case in DOMAINS.values():
             truth = truth_of(case)

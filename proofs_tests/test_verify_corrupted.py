@@ -385,6 +385,7 @@ class TestKnockedOut:
     def test_control_missing_check(
         self, module: object, name: str, instead: object, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of the verifier taken out, one by one."""
         monkeypatch.setattr(module, name, instead)
         for seed in range(4):
             try:

@@ -149,6 +149,7 @@ class TestHoles:
     @pytest.mark.parametrize("seed", range(3))
     @pytest.mark.parametrize(("corrupt", "broken"), CORRUPTIONS, ids=[c.__name__ for c, _ in CORRUPTIONS])
     def test_control_corrupted(self, corrupt: Callable[[Mesh, Random], Mesh], broken: Property, seed: int) -> None:
+        """Corruptions of triangles, points and segments of meshes with holes."""
         report = check(corrupt(holey(seed), Random(seed)))
         assert not report.ok
         assert report.verdict(broken) is Verdict.FAILS, report
@@ -229,6 +230,7 @@ class TestAblation:
     def test_control_missing_check(
         self, module: object, name: str, instead: object, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of the verifier taken out, one by one."""
         cases = [(points, Plain.of(*rest)) for points, rest in ((case[0], case[1:]) for case in DOMAINS.values())]
         monkeypatch.setattr(module, name, instead)  # with it nothing disagrees: TestEverySet
         for points, domain in cases:
@@ -275,6 +277,7 @@ class TestRegions:
         assert labelled([7, 7, 3, 3], [(5, 5, 1), (1, 1, 2), (0.5, 0.5, 2)]).verdict is Verdict.HOLDS  # in no face
 
     def test_control_wrong(self) -> None:
+        """Labels that differ within a face, or are not the point's."""
         differ = labelled([7, 3, 3, 3], [])
         assert [violation.kind for violation in differ.violations] == [Kind.LABELS_DIFFER]
         assert sorted(differ.violations[0].triangles) == [0, 1]

@@ -193,6 +193,7 @@ class TestDual:
             assert (finding.verdict is Verdict.FAILS) is (finding.count > 0)
 
     def test_control_both_verdicts_occur(self) -> None:
+        """Vertices moved or tilted, ridges dropped, doubled, rewired, exchanged, turned."""
         seen = set()
         for seed in range(48):
             points, random = sites_of(seed), Random(seed)
@@ -338,6 +339,7 @@ class TestAblation:
         corrupt: Callable[[SimpleNamespace], None],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
+        """The checks of vertices and of directions taken out."""
         assert not self._report(corrupt).ok
         monkeypatch.setattr(duality.Check, name, replacement)
         assert self._report(corrupt).ok

@@ -148,6 +148,8 @@ class TestEverySmallSet:
         assert all(found == {True, False} for property_, found in seen.items() if property_ not in ALWAYS), seen
 
     def test_control_three_left_turns_are_not_convex(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Quadrilaterals with one right turn taken for convex."""
+
         def lenient(turns: SignArray) -> npt.NDArray[np.bool_]:
             found: npt.NDArray[np.bool_] = cells.orientation_of_quads(turns) != 0
             return found
@@ -407,6 +409,7 @@ class TestLanes:
         assert in_a_child("-c", code, NUMBA_DISABLE_JIT="1").strip() == str(digests())
 
     def test_control_digests_differ(self) -> None:
+        """Other meshes: most digests differ."""
         assert len(set(digests())) > len(digests()) / 2
 
 

@@ -137,6 +137,7 @@ class TestCounts:
         assert (finding.count, finding.rounding) == small_circles(points, triangles)
 
     def test_control_both_sizes_occur(self) -> None:
+        """Violations of both sizes."""
         points = np.concatenate([perturbed_grid(0), [(0.3, 0.2), (40.0, 3.0)]])
         count, small = small_circles(points, flipped(points, 1))
         assert 0 < small < count
@@ -205,6 +206,7 @@ class TestCounts:
         assert rounding() == before
 
     def test_control_a_pass_that_guesses(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Every violation taken for rounding-sized."""
         points = perturbed_grid(3)
         triangles = flipped(points, 3)
         monkeypatch.setattr(grading, "grade_circles", lambda *a: a[-2].fill(severity.ROUNDING_SIZED))
@@ -249,6 +251,7 @@ class TestRanking:
         assert degrees == sorted(degrees, key=lambda x: x or 0.0)
 
     def test_control_in_order_of_place(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Witnesses in the order of their place."""
         monkeypatch.setattr(grading, "ranked", lambda *_: Ranking(np.arange(WITNESSES), 0))
         told = verify(*many()).findings[Property.DELAUNAY].violations
         assert all({*violation.vertices} != {*range(1024, 1028)} for violation in told)

@@ -132,6 +132,7 @@ class TestCircles:
         assert not circle_faults(far, triangles, segments)
 
     def test_control_brute_force_tells_the_properties_apart(self) -> None:
+        """Meshes that have one of the properties and not another."""
         seen: set[tuple[bool, ...]] = set()
         for seed in range(120):
             points, triangles, segments = random_mesh(Random(seed))
@@ -327,6 +328,7 @@ class TestAblation:
     def test_control_missing_check(
         self, name: str, property_: Property, bounds: dict[str, object], monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of circles, angles and areas taken out, one by one."""
         assert conforming(**bounds).verdict(property_) is Verdict.FAILS
         monkeypatch.setattr(deciding, name, holds)
         assert conforming(**bounds).verdict(property_) is Verdict.HOLDS

@@ -124,6 +124,7 @@ class TestAblation:
     """What the check refuses passes without it; what double-doubles leave open, rationals decide likewise."""
 
     def test_control_missing_check(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The check of lengths taken out."""
         assert not verify(SQUARE, TWO, size=2.5).ok
         monkeypatch.setattr(deciding, "check_lengths", lambda *_: Finding(Verdict.HOLDS))
         assert verify(SQUARE, TWO, size=2.5).ok

@@ -424,6 +424,7 @@ class TestDisplaced:
                 assert report.distance == 0
 
     def test_control_all_sorts_occur(self) -> None:
+        """Displacements that are too far, and others that are not."""
         seen = set()
         for seed in range(40):
             for points, triangles, domain, within in displacements(seed):
@@ -491,11 +492,13 @@ class TestAblation:
         return verify(mesh.points, mesh.triangles, domain=domain, within=math.nextafter(distance, 0.0), claims=COVER)
 
     def test_control_the_distance_of_chains(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The distance of chains taken for small."""
         assert not self._below().ok
         monkeypatch.setattr(displaced, "_within", lambda *a: a[3])
         assert self._below().ok
 
     def test_control_the_distance_of_corners(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The distance of corners taken for small."""
         points = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.25)]
         domain = PSLG([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0)], [(0, 1), (1, 2), (2, 0)])
 

@@ -101,11 +101,13 @@ class TestCircumcentres:
         assert asked
 
     def test_control_the_formula_in_doubles_is_not_that_good(self) -> None:
+        """The formula in plain doubles."""
         for name in ("uniform", "circle"):
             mesh = delaunay(inputs()[name])
             assert wrong_centres(mesh, naive_centres(mesh))
 
     def test_control_one_unit_is_seen(self) -> None:
+        """One centre moved by one unit in the last place."""
         mesh = delaunay(inputs()["uniform"])
         found = circumcentres(mesh)
         found[5, 1] = np.nextafter(found[5, 1], 2.0)
@@ -145,6 +147,7 @@ class TestDualEdges:
         assert dual_faults(mesh, *dual_edges(mesh)) == []
 
     def test_control(self) -> None:
+        """Sides exchanged, rays turned, rows shifted."""
         mesh = delaunay([*SQUARE, (1, 1)])
         duals, directions = dual_edges(mesh)
         assert dual_faults(mesh, duals[:, ::-1], directions)
@@ -269,6 +272,7 @@ class TestCells:
         assert sorted(diagram.areas.tolist()) == [1.0] * 12 + [np.inf] * 18
 
     def test_controls_corrupted_diagrams(self) -> None:
+        """A cell turned round, ends and rows exchanged, rays without direction."""
         diagram = voronoi([(0, 0), (4, 0), (4, 4), (0, 4), (2, 2), (1, 3), (9, 7)])
         assert not cell_faults(diagram)
         assert not structure_faults(diagram)

@@ -121,6 +121,7 @@ class TestWindow:
         assert (cells.neighbors[cells.offsets[0] : cells.offsets[1]] < 0).sum() >= 12
 
     def test_controls(self) -> None:
+        """A cell lost, neighbours, sites and sources shifted, a corner moved by one unit in the last place."""
         cells = cells_of(voronoi([(0, 0), (3, 1), (1, 3), (4, 4), (2, 2)], clip=(-1, -1, 5, 5)))
         assert clip_faults(cells) == []
         assert "areas do not add up" in clip_faults(replace(cells, sites=cells.sites[:-1], offsets=cells.offsets[:-1]))
@@ -285,6 +286,7 @@ class TestDomain:
             voronoi(mesh, clip="domain")
 
     def test_controls(self) -> None:
+        """A cell lost, sites shifted, sources exchanged."""
         mesh = right_angled([(0, 0), (1, 0), (0, 1)])
         cells = cells_of(voronoi(mesh, clip="domain"))
         fewer = replace(cells, sites=cells.sites[:-1], offsets=cells.offsets[:-1])

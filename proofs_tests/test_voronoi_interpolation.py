@@ -102,6 +102,7 @@ class TestCoordinates:
             assert all(abs(float(weight) - row(found, i)[v]) < 1e-15 for v, weight in exact.items())
 
     def test_controls(self) -> None:
+        """Weights exchanged, and weights that are all the same."""
         mesh = delaunay([(0, 0), (6, 0), (6, 6), (0, 6), (2, 3), (4, 2)])
         queries = np.array([(3.0, 3.0), (1.0, 2.0)])
         found = natural_neighbors(mesh, queries)
@@ -136,6 +137,7 @@ class TestInterpolation:
         assert deviation(points, points @ plane + 1.0, plane, queries.sum(axis=1)) < 1e-13
 
     def test_control_another_interpolant_is_not_linear(self) -> None:
+        """Data that are not linear."""
         points, plane = inputs()["uniform"], np.array([3.0, -2.0])
         assert deviation(points, (points**2) @ plane + 1.0, plane, points[:50] * 0.9) > 1e-3
 
@@ -229,6 +231,7 @@ class TestLloyd:
         assert relaxed.energies[-1] < 0.7 * relaxed.energies[0]
 
     def test_control_other_moves_raise_the_energy(self) -> None:
+        """Points moved away from their centroids."""
         points = np.random.default_rng(0).random((30, 2))
         relaxed = lloyd(points, clip=(0, 0, 1, 1), iterations=3)
         mirrored = np.clip(2 * points - relaxed.points, 0.0, 1.0)
@@ -266,6 +269,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.voronoi_digest", NUMBA_DISABLE_JIT="1") == here
 
     def test_control(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         from proofs_tests import voronoi_digest
 
         points = inputs()["uniform"]
