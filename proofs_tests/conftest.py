@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from proofs_tests.obligations.recorder import Recorder
 
 from exactkernel.jit import COMPILED
-from proofs_tests.obligations.recorder import Recorder
 
 _patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 settings.register_profile("suite", _patient, max_examples=300, derandomize=True)
