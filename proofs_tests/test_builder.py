@@ -243,7 +243,9 @@ class TestStraightWalk:
             assert oracles.orient(exact[v], exact[w], target) > 0 < oracles.orient(exact[w], exact[u], target)
 
 
-@pytest.mark.obligation("M5", "a builder made of a graph or a triangulation holds the same", method="named cases")
+@pytest.mark.obligation(
+    "M5", "a builder made of a graph or a triangulation holds the same", method="named cases", control_in="TestEditing"
+)
 class TestMaking:
     """Made of a graph, of a triangulation or by steps in any order, it is the same; and what is frozen stays so."""
 

@@ -217,7 +217,12 @@ _MOST = 80.0  # predicates a vertex: the patience of the search, then about a do
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("M5", "the work of a long segment grows linearly, counted in predicates", method="named cases")
+@pytest.mark.obligation(
+    "M5",
+    "the work of a long segment grows linearly, counted in predicates",
+    method="named cases",
+    control_in="TestGrowthOfSearch",
+)
 @pytest.mark.parametrize("name", NAMES)
 class TestGrowth:
     """A segment that crosses the edges of n vertices asks at most a constant number of predicates for each."""

@@ -49,7 +49,12 @@ class TestBounds:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of refinement", method="machine code")
+@pytest.mark.obligation(
+    "J1",
+    "there is no fused multiply-add in the machine code of refinement",
+    method="machine code",
+    control_in="proofs_tests/test_compiled_mesh.py::TestMachineCode",
+)
 class TestMachineCode:
     """The loop that refines contains no fused multiply-add in the filters that were copied into it."""
 
@@ -84,7 +89,12 @@ except KeyboardInterrupt:
 
 @pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="no SIGINT for a child process")
-@pytest.mark.obligation("J1", "Ctrl-C ends a long refinement, and the library works on", method="named cases")
+@pytest.mark.obligation(
+    "J1",
+    "Ctrl-C ends a long refinement, and the library works on",
+    method="named cases",
+    control_in="proofs_tests/test_compiled_mesh.py::TestInterrupt",
+)
 class TestInterrupt:
     """SIGINT in the middle of a run that would make a hundred million points ends it with KeyboardInterrupt; what is
     computed afterwards is what it would have been."""

@@ -72,7 +72,10 @@ def triples(rows: list[list[int]]) -> list[tuple[int, int, int]]:
 
 
 @pytest.mark.obligation(
-    "M4", "insertion equals brute force on every subset of a 4 x 4 grid, in random orders", method="enumeration"
+    "M4",
+    "insertion equals brute force on every subset of a 4 x 4 grid, in random orders",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
 )
 class TestAllSubsetsOfAGrid:
     """For every subset of a grid, inserted in a random order, the triangles are those whose perturbed circles are
@@ -158,7 +161,10 @@ SIX: dict[str, Sequence[Point]] = {
 
 
 @pytest.mark.obligation(
-    "M4", "insertion gives the same triangulation in all 720 orders of six points", method="enumeration"
+    "M4",
+    "insertion gives the same triangulation in all 720 orders of six points",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
 )
 class TestEveryOrder:
     """All 720 orders of insertion of six points give one and the same triangulation."""
@@ -184,7 +190,10 @@ def is_collinear(points: list[oracles.RationalPoint]) -> bool:
 
 @pytest.mark.bounds
 @pytest.mark.obligation(
-    "M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles", method="property-based"
+    "M4",
+    "insertion equals brute force and is a fixed point of Lawson, for any doubles",
+    method="property-based",
+    control_in="TestFaultsAreFound",
 )
 class TestAnyPoints:
     """For any doubles, duplicates and all: the vertices are the distinct points in the order of the input, the

@@ -93,7 +93,10 @@ BINADES = 4
 
 
 @pytest.mark.obligation(
-    "K3", "the filters of orient2d and diametral never lie (exhaustive, 3 bits)", method="exhaustive"
+    "K3",
+    "the filters of orient2d and diametral never lie (exhaustive, 3 bits)",
+    method="exhaustive",
+    control_in="TestFilterControls",
 )
 class TestFilterNeverLies:
     """A sign that the filter certifies is the exact one: over every input of the format, up to symmetries.

@@ -32,7 +32,10 @@ def largest_unit(values: list[float]) -> Fraction | None:
 
 
 @pytest.mark.obligation(
-    "K6", "a coordinate inside the window is decided in doubles, one step outside in rationals", method="named cases"
+    "K6",
+    "a coordinate inside the window is decided in doubles, one step outside in rationals",
+    method="named cases",
+    control_in="TestContext",
 )
 class TestScalarWindow:
     """At each end of each window: the last coordinate inside needs no rationals, the next one outside always does."""

@@ -274,7 +274,7 @@ class TestOneSink:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M3", "Lawson ends there from starts far away", method="named cases")
+@pytest.mark.obligation("M3", "Lawson ends there from starts far away", method="named cases", control_in="TestOneSink")
 class TestManyPoints:
     """The same from a start that has nothing to do with Delaunay: a fan of needles, and equal diagonals."""
 

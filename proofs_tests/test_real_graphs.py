@@ -73,6 +73,7 @@ def cycle(points: list[list[float]]) -> tuple[tuple[float, ...], ...]:
     "M5",
     "the states, islands and all, are triangulated: verified, with their exact area and rings",
     method="named cases",
+    control_in="TestCounties",
 )
 @pytest.mark.parametrize("name", sorted(STATES) if COMPILED else ["CT", "KY", "RI"])
 class TestStates:
@@ -122,7 +123,10 @@ class TestCounties:
 
 
 @pytest.mark.obligation(
-    "M5", "counties whose borders disagree are triangulated, or the crossings named and split", method="named cases"
+    "M5",
+    "counties whose borders disagree are triangulated, or the crossings named and split",
+    method="named cases",
+    control_in="TestCounties",
 )
 @pytest.mark.parametrize("name", DISAGREEING)
 class TestDisagreement:
@@ -145,7 +149,9 @@ class TestDisagreement:
         assert areas[0] < areas[1] < shoelace(COUNTIES[name])
 
 
-@pytest.mark.obligation("M5", "all states as one graph, crossings split", method="named cases")
+@pytest.mark.obligation(
+    "M5", "all states as one graph, crossings split", method="named cases", control_in="TestCounties"
+)
 class TestOneGraph:
     """All states as one graph of rings: borders are shared, and at one place cross; split, it is verified."""
 
@@ -165,7 +171,10 @@ class TestOneGraph:
 
 
 @pytest.mark.obligation(
-    "M5", "all counties as one graph, borders shared, crossings split, by either rule", method="named cases"
+    "M5",
+    "all counties as one graph, borders shared, crossings split, by either rule",
+    method="named cases",
+    control_in="TestCounties",
 )
 class TestAllCounties:
     """All counties as one graph of rings (compiled; else those of Virginia), triangulated and verified."""
@@ -186,6 +195,7 @@ class TestAllCounties:
     "ARR6",
     "the counties: borders that cross are noded, and all but a few points stay bit for bit",
     method="named cases",
+    control_in="proofs_tests/test_crossings.py::TestArrangement",
 )
 class TestArrangedCounties:
     """All counties as one graph of rings (compiled; else those of Virginia): borders that nearly coincide creep when

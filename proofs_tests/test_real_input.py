@@ -34,7 +34,10 @@ def cities(name: str) -> FloatArray:
 
 
 @pytest.mark.obligation(
-    "M4", "real cities, duplicates and all, are triangulated as brute force and scipy say", method="named cases"
+    "M4",
+    "real cities, duplicates and all, are triangulated as brute force and scipy say",
+    method="named cases",
+    control_in="TestKnownCases",
 )
 @EACH
 class TestCities:

@@ -20,7 +20,10 @@ def is_right(done: Refinement) -> bool:
 
 
 @pytest.mark.obligation(
-    "R2", "lengths that halve because of what is near by are not taken for a run that never ends", method="named cases"
+    "R2",
+    "lengths that halve because of what is near by are not taken for a run that never ends",
+    method="named cases",
+    control_in="TestExcuses",
 )
 class TestChannels:
     """Segments far longer than they are apart, which meet at right angles or not at all, are refined to the end."""

@@ -136,7 +136,10 @@ NAMED = {
 
 
 @pytest.mark.obligation(
-    "R1", "segments are split exactly on them where doubles allow, else within one ulp", method="property-based"
+    "R1",
+    "segments are split exactly on them where doubles allow, else within one ulp",
+    method="property-based",
+    control_in="TestControls",
 )
 class TestSplitPoint:
     """Law: the answer is the double at the dyadic parameter of fewest bits among the neighbours of t, exactly, if there

@@ -102,7 +102,10 @@ def all_sets(brute: BruteForce) -> Iterator[tuple[Triangle, ...]]:
 
 
 @pytest.mark.obligation(
-    "V1", "every set of triangles over five points is judged as brute force judges it", method="enumeration"
+    "V1",
+    "every set of triangles over five points is judged as brute force judges it",
+    method="enumeration",
+    control_in="proofs_tests/test_verify_meshes.py::TestAblation",
 )
 class TestEverySetOfFivePoints:
     """For every set of triangles over five points each decided verdict is that of brute force, and only the
@@ -139,6 +142,7 @@ def random_triangles(random: Random, n: int, size: int) -> list[Triangle]:
     "V1",
     "random lists of triangles over six and seven points, degenerate ones too, are judged as by brute force",
     method="differential",
+    control_in="proofs_tests/test_verify_meshes.py::TestAblation",
 )
 class TestRandomSets:
     """The same for random lists over six and seven points of a small grid: any orientation, repeated

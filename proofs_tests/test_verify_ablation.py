@@ -63,7 +63,10 @@ def is_right(points: Points, triangles: Sequence[Triangle]) -> bool:
 
 
 @pytest.mark.obligation(
-    "V1", "theorems A to D: the local conditions accept exactly the Delaunay triangulations", method="enumeration"
+    "V1",
+    "theorems A to D: the local conditions accept exactly the Delaunay triangulations",
+    method="enumeration",
+    control_in="TestHullConditionsAreNecessary",
 )
 class TestHullConditionsSuffice:
     """For every set of triangles over five points, all conditions hold exactly if brute force finds nothing wrong."""
@@ -216,6 +219,7 @@ class TestDomainConditionsAreNecessary:
     "V1",
     "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations",
     method="enumeration",
+    control_in="TestDomainConditionsAreNecessary",
 )
 class TestDomainConditionsSuffice:
     """For sets of triangles over five points, as the domain that they bound: all conditions hold exactly if they are

@@ -329,6 +329,7 @@ def grown(truth: Truth, random: Random) -> list[Triangle]:
     "V1",
     "random domains on a small grid, where all coincides with all, are judged as by brute force",
     method="differential",
+    control_in="proofs_tests/test_verify_domains.py::TestAblation",
 )
 class TestRandomDomains:
     """The same for random domains over points of a small grid, where everything coincides with everything."""

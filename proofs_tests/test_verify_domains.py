@@ -313,6 +313,7 @@ class TestRegions:
     "V1",
     "segments through vertices of large degree, found by angle, are judged as by brute force",
     method="enumeration",
+    control_in="TestAblation",
 )
 class TestBundles:
     """Chains through vertices of large degree are found by angle: the verdicts are the same."""

@@ -165,6 +165,7 @@ class TestCorruptedMeshes:
     "V1",
     "any part of an admissible mesh is admissible; with one more triangle it is what brute force says",
     method="differential",
+    control_in="TestAblation",
 )
 class TestParts:
     """Any part of an admissible set is admissible, however ragged its boundary; with one more triangle it is

@@ -180,7 +180,10 @@ TWO = [(0, 1, 2), (0, 2, 3)]
 
 
 @pytest.mark.obligation(
-    "V1", "bounds on angles and areas are decided as in fractions, with witnesses", method="differential"
+    "V1",
+    "bounds on angles and areas are decided as in fractions, with witnesses",
+    method="differential",
+    control_in="TestAblation",
 )
 class TestBounds:
     """The violations are the triangles that the law of cosines and the shoelace formula find, in any orientation."""

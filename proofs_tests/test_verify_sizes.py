@@ -22,7 +22,10 @@ TWO = [(0, 1, 2), (0, 2, 3)]
 
 
 @pytest.mark.obligation(
-    "V1", "a size field is kept iff no edge is longer than its size, in fractions", method="differential"
+    "V1",
+    "a size field is kept iff no edge is longer than its size, in fractions",
+    method="differential",
+    control_in="TestAblation",
 )
 class TestSizes:
     """The violations are the triangles that Pythagoras finds, and as many of them are rounding-sized as by definition,

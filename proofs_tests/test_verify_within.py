@@ -192,7 +192,10 @@ def slanted(seed: int) -> PSLG:
 
 
 @pytest.mark.obligation(
-    "V1", "refined meshes cover their domain within exactly the distance that refinement reports", method="differential"
+    "V1",
+    "refined meshes cover their domain within exactly the distance that refinement reports",
+    method="differential",
+    control_in="TestAblation",
 )
 class TestRefined:
     """Steiner points on slanted segments are rounded: strictly the domain is missed; within any distance it is covered,
@@ -270,7 +273,10 @@ class TestRefined:
 
 
 @pytest.mark.obligation(
-    "V1", "corners that a file format rounded are found, and their distance is exact", method="differential"
+    "V1",
+    "corners that a file format rounded are found, and their distance is exact",
+    method="differential",
+    control_in="TestAblation",
 )
 class TestMoved:
     """Coordinates rounded to 32 bits: the domain is covered within the largest distance of a corner from its point or

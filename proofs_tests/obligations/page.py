@@ -79,24 +79,15 @@ def _details(own: Sequence[Obligation], measured: Mapping[str, Measured]) -> Ite
     yield "|---|---|---:|---:|---|"
     for o in sorted(own, key=_strength):
         figures = measured.get(o.place)
-        file, name = o.place.split("::")
+        name = o.place.rpartition("::")[2]
         cells = (
-            f"{o.statement} <br> `{file.removeprefix('proofs_tests/')}` {name}",
+            f"{o.statement} <br> `{o.file.removeprefix('proofs_tests/')}` {name}",
             o.method,
             f"{figures.cases:,}" if figures else "",
             _seconds(figures.seconds) if figures else "",
-            _faults(o),
+            "; ".join(control.fault for control in o.controls),
         )
         yield f"| {' | '.join(cells)} |"
-
-
-def _faults(obligation: Obligation) -> str:
-    faults = [control.fault.rstrip(".") for control in obligation.controls]
-    if obligation.control_in:
-        file, name = obligation.control_in.split("::")
-        same = obligation.place.startswith(f"{file}::")
-        faults.append(f"those of {name}" + ("" if same else f" in {file.removeprefix('proofs_tests/')}"))
-    return "; ".join(faults)
 
 
 def _sentence(statement: str) -> str:
