@@ -242,6 +242,20 @@ class TestStraightWalk:
         if w != plane.ghost:
             assert oracles.orient(exact[v], exact[w], target) > 0 < oracles.orient(exact[w], exact[u], target)
 
+    def test_control_the_triangle_beside_it(self) -> None:
+        """A walk that ends on the other side of its last edge."""
+        points = [(float(x), float(y)) for x, y in grid(3, 3)]
+        builder = TriangulationBuilder(points)
+        p = builder.insert_point(9.0, 9.0)
+        builder.delete_vertex(p)
+        plane, exact = builder._draft.plane, oracles.rationals(points)
+        plane.xy[2 * p : 2 * p + 2] = 0.75, 0.5
+        e, where = walk(plane, 0, p)
+        target = oracles.rationals([(0.75, 0.5)])[0]
+        self.check(builder, e, where, exact, target)
+        with pytest.raises(AssertionError):
+            self.check(builder, e ^ 2, where, exact, target)
+
 
 @pytest.mark.obligation(
     "M5", "a builder made of a graph or a triangulation holds the same", method="named cases", control_in="TestEditing"

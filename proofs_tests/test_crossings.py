@@ -473,3 +473,9 @@ class TestBoundary:
         assert arranged.pslg.segments.tolist() == [[0, 2], [2, 3], [3, 1]]
         assert arranged.incidence.tolist() == [[0, 0], [0, 2], [1, 0], [1, 1], [2, 0]]
         assert arranged.chain(1).tolist() == [3, 2]
+
+    def test_control_good(self) -> None:
+        """None: the same without the fault is taken."""
+        assert len(find_crossings([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2)])) == 0
+        points, segments = bundle(26)
+        assert len(find_crossings(points, segments)) > 0

@@ -322,6 +322,11 @@ class TestStages:
         work = delaunay(SIX["no window"]).work
         assert work.incircle[Stage.RATIONAL] > 0
 
+    def test_control_other_input_needs_other_stages(self) -> None:
+        """Points of a circle in the place of points in general position."""
+        work = delaunay(STRUCTURED["circle"][:300]).work
+        assert not {stage for stage, count in work.incircle.items() if count} <= {Stage.FILTER}
+
 
 class TestProgress:
     """Progress is told in increasing numbers that end with all points; an exception in it passes through."""

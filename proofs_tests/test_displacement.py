@@ -103,6 +103,13 @@ class TestDisplacement:
         rows += [(1e-20 * i, 2.0, 0.0, 0.0, 0.5 + i, 2.0**-60 * i) for i in range(9)]
         assert answer(rows) == expected(rows)
 
+    def test_control_in_doubles(self) -> None:
+        """Distances compared in doubles: another point is the farthest."""
+        rows = [(3.0, 2.0**-k, 0.0, 0.0, 2.0, 0.0) for k in (30, 29, 31)]
+        distances = [float(distance_squared(row)) for row in rows]
+        assert answer(rows)[1] == expected(rows)[1] == 1
+        assert distances.index(max(distances)) != 1
+
 
 class TestControls:
     """Controls: the same law rejects the distance to the line, and bounds that are no bounds."""

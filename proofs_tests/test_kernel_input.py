@@ -124,6 +124,12 @@ class TestBadPoints:
             assert issubclass(error, ek.ExactMeshError)
             assert issubclass(error, ValueError)
 
+    @pytest.mark.parametrize(("function", "n"), SCALARS)
+    def test_control_good_points(self, function: Callable[..., object], n: int) -> None:
+        """None: the same points without the bad one are taken."""
+        good: Sequence[object] = [(0, 0), (1, 0), (0, 1), (Fraction(1, 3), -2)][:n]
+        function(*good)
+
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -306,6 +312,14 @@ class TestBatch:
         expected = [oracle.orient2d((0, 0), (1, 1), p) for p in line.tolist()]
         assert ek.orient2d_batch((0, 0), (1, 1), line).tolist() == expected
         assert len(set(expected)) == 3
+
+    @pytest.mark.parametrize(("batch", "exact", "n"), BATCHES)
+    def test_control_a_row_late(
+        self, batch: Callable[..., npt.NDArray[np.int8]], exact: Callable[..., int], n: int
+    ) -> None:
+        """Signs that are those of the row before."""
+        with pytest.raises(AssertionError):
+            self.test_broadcasting(lambda *points: np.roll(batch(*points), 1), exact, n)
 
 
 class TestBatchWindow:

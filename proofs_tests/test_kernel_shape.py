@@ -314,6 +314,13 @@ class TestShapeStages:
             assert not angle_below_adaptive(k, angle_bound(20.0), *np.ravel(far).tolist())
             assert k.counts[0].tolist() == [0, 0, 0, 0, 1]
 
+    def test_control_a_closed_stage_decides_nothing(self) -> None:
+        """The grid stage closed: the tally is another one."""
+        k = make_context(np.array(RIGHT))._replace(grid_limit=0.0)
+        angle_below_adaptive(k, angle_bound(45.0), *np.ravel(RIGHT).tolist())
+        assert k.counts[0][ek.Stage.GRID] == 0
+        assert k.counts[0].sum() == 1
+
 
 @pytest.mark.obligation("K7", "bad bounds and shapes raise a typed error", method="named cases")
 class TestBadBounds:
@@ -353,3 +360,10 @@ class TestBadBounds:
             ek.area_above(RIGHT, "1")  # type: ignore[arg-type]  # what an untyped caller passes
         assert not ek.area_above([(0, 0), (1, 1), (2, 2)], 0)
         assert ek.area_above(np.array(RIGHT), np.float64(0.25))
+
+    def test_control_good_bounds(self) -> None:
+        """None: bounds at the ends of their ranges are taken."""
+        assert not ek.angle_below(RIGHT, 0)
+        assert not ek.angle_above(RIGHT, 180)
+        assert ek.area_above(RIGHT, 0)
+        assert not ek.length_above(RIGHT[:2], math.inf)

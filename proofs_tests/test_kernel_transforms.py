@@ -154,6 +154,7 @@ class TestMiniFloat:
         assert round_array(x, 2, quantum=1.0).tolist() == [1.0, 1.0, 2.0, 4.0, 4.0]
         assert round_array(np.array([0.5, 0.25]), 2, quantum=1.0).tolist() == [0.0, 0.0]
 
-    def test_a_stale_edit_is_noticed(self) -> None:
+    def test_control_a_stale_edit_is_noticed(self) -> None:
+        """An edit of text that the source does not have."""
         with pytest.raises(LookupError):
             derived("two_sum", MiniFloat(3, edits={"two_sum": ("no such text", "")}))

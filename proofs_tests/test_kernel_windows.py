@@ -162,15 +162,19 @@ class TestScaling:
     def test_scaling(self, points: tuple[Point, ...]) -> None:
         coordinates = np.array(points)
         scaled, context = scaled_into_window(coordinates)
-        pairs = [(Fraction(x), Fraction(y)) for x, y in zip(coordinates.flat, scaled.flat, strict=True)]
-        factors = {y / x for x, y in pairs if x != 0}
-        assert len(factors) <= 1
-        for factor in factors:
-            assert factor.numerator & (factor.numerator - 1) == 0
-            assert factor.denominator & (factor.denominator - 1) == 0
-        assert all(y == 0 for x, y in pairs if x == 0)
+        assert self.is_power_of_two_times(coordinates, scaled)
         reachable = self.some_power_leads_inside(coordinates)
         assert math.isfinite(context.incircle_bound) == reachable
+
+    @staticmethod
+    def is_power_of_two_times(
+        coordinates: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+        scaled: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    ) -> bool:
+        pairs = [(Fraction(x), Fraction(y)) for x, y in zip(coordinates.flat, scaled.flat, strict=True)]
+        factors = {y / x for x, y in pairs if x != 0}
+        powers = (n for factor in factors for n in (factor.numerator, factor.denominator))
+        return len(factors) <= 1 and all(n & (n - 1) == 0 for n in powers) and all(y == 0 for x, y in pairs if x == 0)
 
     @staticmethod
     def some_power_leads_inside(coordinates: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool:
@@ -195,6 +199,14 @@ class TestScaling:
     def test_inside_already(self) -> None:
         tame = np.array([[0.25, 3.0]])
         assert scaled_into_window(tame)[0] is tame
+
+    def test_control_other_factors(self) -> None:
+        """A factor of three, and one number scaled unlike the others."""
+        coordinates = np.array([[1.0, 0.0], [3.0, 5.0]])
+        assert self.is_power_of_two_times(coordinates, coordinates / 4.0)
+        assert not self.is_power_of_two_times(coordinates, coordinates * 3.0)
+        assert not self.is_power_of_two_times(coordinates, coordinates * np.array([[4.0], [2.0]]))
+        assert not self.is_power_of_two_times(coordinates, coordinates + np.array([[0.0, 1.0], [0.0, 0.0]]))
 
 
 @pytest.mark.obligation(

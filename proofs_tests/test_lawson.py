@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from proofs_tests import kernel_oracle, mesh_oracle, oracles
+from proofs_tests import enumeration, kernel_oracle, mesh_oracle, oracles
 from proofs_tests.enumeration import COUNTS, Triangulation, canonical_triangles, grid, triangulations
 from proofs_tests.mesh_strategies import small_grid_sets
 from proofs_tests.oracles import RationalPoint
@@ -216,6 +216,14 @@ class TestCounts:
                         reached.add(rows(surface))
                         frontier.append(rows(surface))
         assert reached == everything
+
+    @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon"])
+    def test_control_one_diagonal_too_few(self, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """An enumeration that leaves out one of the empty triangles: its count is another one."""
+        empty = enumeration._empty_triangles
+        monkeypatch.setattr(enumeration, "_empty_triangles", lambda points: empty(points)[1:])
+        with pytest.raises(AssertionError):
+            self.test_published(*COUNTS[name])
 
 
 @pytest.mark.obligation(

@@ -160,6 +160,16 @@ class TestOperators:
                 assert {e.org for e in handle.orbit()} == {handle.org}
                 assert {e.left for e in handle.face()} == {handle.left}
 
+    @pytest.mark.parametrize(("name", "wrong"), [("lnext", "rnext"), ("oprev", "onext"), ("dnext", "lprev")])
+    def test_control_operators_mistaken(
+        self, name: str, wrong: str, states: list[IntArray], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """One operator taken for another."""
+        other = getattr(algebra, wrong)
+        monkeypatch.setattr(algebra, name, lambda ring, q: other(ring, q))
+        with pytest.raises(AssertionError):
+            self.test_definitions(2, states)
+
 
 @pytest.mark.obligation(
     "M1", "splice is an involution that joins or cuts one origin and one left face", method="exhaustive"
@@ -179,6 +189,7 @@ class TestSplice:
                 same_face = any({a, b} <= cycle for cycle in faces)
                 assert len(cycles(after.tolist(), range(0, 4 * k, 2))) == len(rings) + (1 if same_origin else -1)
                 assert len(left_faces(after.tolist())) == len(faces) + (1 if same_face else -1)
+                assert not any(breaks_axioms(after.tolist(), q) for q in range(4 * k))
                 algebra.splice(after, a, b)
                 assert (after == ring).all()
 
@@ -193,6 +204,16 @@ class TestSplice:
             with pytest.raises(TopologyError):
                 method(dual)
         surface.check()
+
+    def test_control_the_dual_left_alone(self, states: list[IntArray], monkeypatch: pytest.MonkeyPatch) -> None:
+        """A splice of the primal rings only."""
+
+        def primal_only(ring: IntArray, a: int, b: int) -> None:
+            ring[a], ring[b] = ring[b], ring[a]
+
+        monkeypatch.setattr(algebra, "splice", primal_only)
+        with pytest.raises(AssertionError):
+            self.test_involution(2, states)
 
 
 def breaks_axioms(ring: Permutation, q: int) -> bool:

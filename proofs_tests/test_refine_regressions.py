@@ -1,5 +1,6 @@
 """What went wrong once in refinement, each with the input that showed it."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -90,6 +91,15 @@ class TestBentSegments:
             start, end = (tuple(mesh.points[v].tolist()) for v in (a, b))
             assert all(diametral(start, end, tuple(p)) <= 0 for p in mesh.points.tolist())
 
+    def test_control_a_point_moved(self) -> None:
+        """A Steiner point moved off its place: the verifier's answer is no."""
+        points = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 3), (0, 1), (2, 4), (3, 0)]
+        done = refine(PSLG(points, [*RING, (4, 5), (5, 6), (6, 7), (7, 4)]), min_angle=0, conforming=True)
+        moved = done.triangulation.points.copy()
+        moved[-1] += 0.5
+        assert is_right(done)
+        assert not is_right(replace(done, triangulation=replace(done.triangulation, points=moved)))
+
 
 @pytest.mark.obligation(
     "R2", "sizes below what forbidden edges allow are given up, not halved for ever", method="named cases"
@@ -103,6 +113,13 @@ class TestForbiddenEdges:
         assert set(done.reasons.tolist()) == {Reason.FORBIDDEN}
         assert len(done.triangulation.boundary()[0]) == 4
         assert is_right(done)
+
+    def test_control_allowed(self) -> None:
+        """The same with a boundary that may be divided: nothing is given up."""
+        plate = PSLG.from_rings([[(0, 0), (9, 0), (9, 1), (0, 1)]])
+        done = refine(plate, min_angle=0, size=lambda p: np.full(len(p), 0.25))
+        assert done.complete
+        assert len(done.triangulation.boundary()[0]) > 4
 
 
 @pytest.mark.obligation(

@@ -226,6 +226,15 @@ class TestSnapped:
             cross.snapped(20)
         assert len(arrange(cross).pslg.snapped(20).segments) == 4
 
+    def test_control_another_drawing(self) -> None:
+        """A point that has crossed a segment, two points that have become one: the drawing is another."""
+        ring = [[0, 1, 2]]
+        corners = [(0, 0), (4, 0), (0, 4)]
+        before = drawing(exact(np.array([*corners, (1.0, 1.0)])), [], ring)
+        assert drawing(exact(np.array([*corners, (1.0, 0.5)])), [], ring) == before
+        assert drawing(exact(np.array([*corners, (3.0, 3.0)])), [], ring) != before
+        assert drawing(exact(np.array([*corners, (4.0, 0.0)])), [], ring) != before
+
 
 @pytest.mark.obligation(
     "R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined", method="named cases"

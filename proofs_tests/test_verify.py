@@ -217,7 +217,8 @@ class TestHardSets:
             ([(0, 0), (2, 0), (4, 0)], [(0, 1, 2)], "zero_area"),
         ],
     )  # fmt: skip
-    def test_kind_of_fault(self, points: Points, triangles: list[Triangle], kind: str) -> None:
+    def test_control_kind_of_fault(self, points: Points, triangles: list[Triangle], kind: str) -> None:
+        """A cell laid over another, cells that cross, hanging nodes, a cell without area."""
         report = verify(points, triangles)
         finding = report.findings[Property.ADMISSIBLE]
         assert finding.verdict is Verdict.FAILS

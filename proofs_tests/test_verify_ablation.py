@@ -127,7 +127,8 @@ class TestConvexConditionsAreNecessary:
         assert tuple(POLYGONS) == CONVEX_CONDITIONS
 
     @pytest.mark.parametrize(("name", "polygon"), POLYGONS.items(), ids=POLYGONS.keys())
-    def test_ablation(self, name: str, polygon: Points) -> None:
+    def test_control_ablation(self, name: str, polygon: Points) -> None:
+        """Polygons that are not convex and break one of the three conditions alone."""
         exact = oracles.rationals(polygon)
         assert broken_by_cycle(exact, range(len(exact))) == {name}
         assert not 0 < _area(exact) == oracles.hull_area(exact)

@@ -313,6 +313,11 @@ class TestClaims:
         assert (violation.kind, violation.magnitude) == (Kind.WRONG_CENTRE, Fraction(1, 4))
         assert finding.severity is Severity.WRONG
 
+    def test_control_good(self) -> None:
+        """None: a diagram in the same form is taken."""
+        points = self.KITE[0]
+        assert verify(points, [(0, 1, 3), (1, 2, 3)], dual=voronoi(points)).ok
+
 
 @pytest.mark.obligation("V2", "each condition about diagrams is necessary", method="ablation")
 class TestAblation:

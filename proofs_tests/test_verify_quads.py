@@ -372,9 +372,10 @@ class TestCorrupted:
         ("corrupt", "property_", "kinds"), CORRUPTIONS, ids=[f"{f.__name__}-{p}" for f, p, _ in CORRUPTIONS]
     )
     @pytest.mark.parametrize("seed", range(3))
-    def test_rejected(
+    def test_control_rejected(
         self, corrupt: Callable[[Mesh, Random], Mesh], property_: Property, kinds: set[Kind], seed: int
     ) -> None:
+        """Points moved, cells lost, doubled, turned round, folded, and more, one at a time."""
         points, triangles, quads = corrupt(mixed_grid(seed), Random(seed))
         report = verify(points, triangles, quads=quads)
         finding = report.findings[property_]

@@ -300,6 +300,14 @@ class TestClaims:
             assert report.findings[property_].violations[0].kind is Kind.ZERO_AREA
         assert report.verdict(Property.MAX_AREA) is Verdict.HOLDS
 
+    def test_control_good_bounds(self) -> None:
+        """None: bounds at the ends of their ranges are taken."""
+        assert verify(KITE, HALVES, min_angle=0, max_angle=180, max_area=math.inf).claims[-3:] == (
+            Property.MIN_ANGLE,
+            Property.MAX_ANGLE,
+            Property.MAX_AREA,
+        )
+
 
 def holds(*_: object) -> Finding:
     return Finding(Verdict.HOLDS)

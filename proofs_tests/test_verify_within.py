@@ -174,6 +174,16 @@ class TestNearest:
         points = np.array(circle[::-1] * 2)
         assert nearest_corners(points, np.arange(2, 12), np.zeros((1, 2))).tolist() == [2]
 
+    def test_control_in_doubles(self) -> None:
+        """Distances in doubles: they are infinite or zero for all, and the first corner is taken."""
+        for scale in (1e200, 1e-200):
+            points = np.array([(3.0, 3.0), (1.0, 1.0), (2.0, 0.0)]) * scale
+            distances = (points**2).sum(axis=1)
+            brute = within_oracle.nearest(oracles.rationals(points.tolist()), [0, 1, 2], (Fraction(0), Fraction(0)))
+            assert nearest_corners(points, np.arange(3), np.zeros((1, 2))).tolist() == [brute] == [1]
+            with np.errstate(over="ignore"):
+                assert distances.argmin() != brute
+
 
 def star_polygon(seed: int, n: int = 9) -> tuple[Points, list[Pair]]:
     """A polygon with slanted sides, and a pentagon inside."""
@@ -484,6 +494,11 @@ class TestArguments:
     def test_inadmissible(self) -> None:
         report = verify(self.TWO[0], [(0, 1, 2), (0, 1, 2)], domain=self.HALF, within=1)
         assert report.findings[Property.COVERS_DOMAIN].because == (Property.ADMISSIBLE,)
+
+    def test_control_good(self) -> None:
+        """None: distances at the ends of the range are taken."""
+        assert verify(*self.TWO, domain=self.HALF, within=0).ok
+        assert verify(*self.TWO, domain=self.HALF, within=1e308).ok
 
 
 @pytest.mark.obligation("V2", "each condition of coverage within a distance is necessary", method="ablation")
