@@ -31,7 +31,7 @@ class Recorder:
         self.writes = writes
         self._examples: dict[str, int] = {}
         self._before = processor_seconds()
-        self._figures: defaultdict[str, Figures] = defaultdict(Figures)
+        self.figures: defaultdict[str, Figures] = defaultdict(Figures)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self) -> Generator[None, object, object]:
@@ -72,8 +72,8 @@ class Recorder:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         place = report.nodeid.split("[")[0].rpartition("::")[0]
-        self._figures[place] += Figures.of(report)
+        self.figures[place] += Figures.of(report)
 
     def pytest_sessionfinish(self, exitstatus: int) -> None:
         if self.writes and exitstatus == pytest.ExitCode.OK:
-            update(self.path, self._figures, {obligation.place for obligation in collect()})
+            update(self.path, self.figures, {obligation.place for obligation in collect()})
