@@ -19,6 +19,7 @@ from proofs_tests.enumeration import CIRCLE_OF_EIGHT, COUNTS, Triangulation, can
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.oracles import RationalPoint, Triangle
 from proofs_tests.pslg_strategies import Graph, graphs
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactmesh import PSLG, ExactMeshError, constrained_delaunay, delaunay, verify
@@ -111,23 +112,27 @@ class TestOneSink:
             waiting -= done
         assert all(after in graph.all for flips in graph.all.values() for after in flips.values())
 
-    def test_unique(self, name: str) -> None:
+    def test_unique(self, name: str, record_property: Record) -> None:
         graph = FlipGraph(SETS[name])
-        for fixed in graph.constraints():
+        every = list(graph.constraints())
+        for fixed in every:
             assert len(graph.sinks(fixed)) == 1
+        record_property("cases", len(every))
 
-    def test_ours(self, name: str) -> None:
+    def test_ours(self, name: str, record_property: Record) -> None:
         graph = FlipGraph(SETS[name])
-        every = 1 if COMPILED else 17
-        for fixed in list(graph.constraints())[::every]:
+        some = list(graph.constraints())[:: 1 if COMPILED else 17]
+        for fixed in some:
             assert [ours(SETS[name], segments_of(fixed))] == graph.sinks(fixed)
+        record_property("cases", len(some))
 
-    def test_by_visibility(self, name: str) -> None:
+    def test_by_visibility(self, name: str, record_property: Record) -> None:
         """The sink is what visibility says."""
         graph = FlipGraph(SETS[name])
         every = list(graph.constraints())
         for fixed in every[:: 1 + len(every) // 30]:
             assert [constrained_oracle.constrained_triangles(graph.points, segments_of(fixed))] == graph.sinks(fixed)
+        record_property("cases", len(every[:: 1 + len(every) // 30]))
 
 
 @pytest.mark.obligation(
@@ -232,19 +237,23 @@ class TestEveryOrder:
     POINTS: tuple[Point, ...] = ((0, 0), (4, 0), (4, 2), (0, 2), (1, 1), (2, 1), (3, 1))
     SEGMENTS: tuple[Segment, ...] = ((0, 2), (4, 6), (1, 6), (4, 3))
 
-    def test_every_order_of_segments(self) -> None:
+    def test_every_order_of_segments(self, record_property: Record) -> None:
         expected = ours(self.POINTS, self.SEGMENTS)
-        for order in permutations(self.SEGMENTS):
+        orders = list(permutations(self.SEGMENTS))
+        for order in orders:
             for mask in range(1 << len(order)):
                 turned = [(b, a) if mask >> i & 1 else (a, b) for i, (a, b) in enumerate(order)]
                 assert ours(self.POINTS, turned) == expected
+        record_property("cases", len(orders) << len(self.SEGMENTS))
 
-    def test_every_order_of_points(self) -> None:
+    def test_every_order_of_points(self, record_property: Record) -> None:
         expected = constrained_delaunay(PSLG(self.POINTS, self.SEGMENTS), carve=False).canonical()
-        for order in list(permutations(range(7)))[:: 7 if COMPILED else 210]:
+        orders = list(permutations(range(7)))[:: 7 if COMPILED else 210]
+        for order in orders:
             segments = [(order.index(a), order.index(b)) for a, b in self.SEGMENTS]
             pslg = PSLG([self.POINTS[i] for i in order], segments)
             assert constrained_delaunay(pslg, carve=False).canonical() == expected
+        record_property("cases", len(orders))
 
     @given(graphs(), st.integers(0, 2**64), st.randoms(use_true_random=False))
     @settings(max_examples=80)
@@ -380,19 +389,21 @@ class Pairs:
 
 @pytest.mark.obligation(
     "M5",
-    "any two segments on a grid, or between cocircular points, give what brute force gives",
+    "two segments on a grid or between cocircular points, one pair in five, give what brute force gives",
     method="enumeration",
     control_in="TestFaultsAreFound",
 )
 @pytest.mark.parametrize("points", [grid(3, 3), grid(2, 4), CIRCLE_OF_EIGHT], ids=["3 x 3", "2 x 4", "octagon"])
 class TestEveryPair:
-    """Any two segments: refused exactly when they cross in no vertex, else the triangles and pieces of brute force."""
+    """Two segments, one pair in five: refused exactly when they cross in no vertex, else the triangles and pieces of
+    brute force."""
 
-    def test_brute_force(self, points: list[tuple[int, int]]) -> None:
+    def test_brute_force(self, points: list[tuple[int, int]], record_property: Record) -> None:
         pairs = Pairs(points, 5 if COMPILED else 11)
         assert not pairs.disagreements()
         refused = list(pairs.expected.values()).count("crossing")
         assert 0 < refused < len(pairs.expected) / 2
+        record_property("cases", len(pairs.expected))
 
 
 FAULTY = """

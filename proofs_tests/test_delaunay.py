@@ -16,6 +16,7 @@ from proofs_tests import mesh_oracle, oracles
 from proofs_tests.enumeration import canonical_triangles, grid
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.mesh_strategies import point_sets
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactkernel.types import FloatArray, Stage
@@ -86,12 +87,15 @@ class TestAllSubsetsOfAGrid:
         random = np.random.default_rng(0)
         monkeypatch.setattr(MODULE, "insertion_order", lambda xy, _: random.permutation(len(xy)))
 
-    def test_3x3(self) -> None:
-        assert not Subsets(3, 3).disagreements(range(1 << 9))
+    def test_3x3(self, record_property: Record) -> None:
+        masks = range(1 << 9)
+        assert not Subsets(3, 3).disagreements(masks)
+        record_property("cases", len(masks))
 
-    def test_4x4(self) -> None:
+    def test_4x4(self, record_property: Record) -> None:
         masks = range(1 << 16) if COMPILED else range(0, 1 << 16, 97)
         assert not Subsets(4, 4).disagreements(masks)
+        record_property("cases", len(masks))
 
     def test_brute_force_covers_the_hull(self) -> None:
         """The oracle itself: its triangles cover the hull of the subset once."""
@@ -170,7 +174,9 @@ class TestEveryOrder:
     """All 720 orders of insertion of six points give one and the same triangulation."""
 
     @pytest.mark.parametrize("points", SIX.values(), ids=SIX.keys())
-    def test_all_permutations(self, points: Sequence[Point], monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_all_permutations(
+        self, points: Sequence[Point], monkeypatch: pytest.MonkeyPatch, record_property: Record
+    ) -> None:
         orders = list(permutations(range(6)))[:: 1 if COMPILED else 7]
         exact = oracles.rationals(points)
         distinct = list(dict.fromkeys(exact))
@@ -182,6 +188,7 @@ class TestEveryOrder:
             assert canonical_triangles(mesh.triangles.tolist()) == expected
             assert oracles.rationals(mesh.points.tolist()) == distinct
             assert [distinct[v] for v in mesh.representative] == exact
+        record_property("cases", len(orders))
 
 
 def is_collinear(points: list[oracles.RationalPoint]) -> bool:

@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 from proofs_tests.kernel_oracle import parity
+from proofs_tests.recording import Record
 
 from exactkernel import incircle, incircle_perturbed, orient2d
 
@@ -37,9 +38,10 @@ class TestPerturbedSign:
     """For four distinct points that are not all on a line the sign is not 0, changes with the parity of the order, and
     is that of incircle wherever that decides."""
 
-    def test_all_fours_of_a_grid(self) -> None:
+    def test_all_fours_of_a_grid(self, record_property: Record) -> None:
         ties = 0
-        for points in combinations(GRID_4, 4):
+        fours = list(combinations(GRID_4, 4))
+        for points in fours:
             if all(orient2d(points[0], points[1], p) == 0 for p in points[2:]):
                 assert incircle_perturbed(*points) == 0
                 continue
@@ -49,6 +51,7 @@ class TestPerturbedSign:
             if sign == 0 or points[0] == (0, 0):
                 assert is_antisymmetric(incircle_perturbed, points)
         assert ties > 150
+        record_property("cases", len(fours))
 
     def test_control_other_predicates_are_refused(self) -> None:
         """The plain incircle, and a perturbation that ignores the order of the points."""
@@ -119,13 +122,15 @@ def random_subsets(count: int) -> list[list[Cell]]:
 class TestUniqueTriangulation:
     """The triangles whose perturbed circle is empty cover the convex hull exactly once and use every point."""
 
-    def test_grids(self) -> None:
+    def test_grids(self, record_property: Record) -> None:
         assert covers_the_hull_once(GRID_3, incircle_perturbed)
         assert covers_the_hull_once(GRID_4, incircle_perturbed)
+        record_property("cases", 2)
 
-    def test_random_subsets(self) -> None:
+    def test_random_subsets(self, record_property: Record) -> None:
         for subset in random_subsets(120):
             assert covers_the_hull_once(subset, incircle_perturbed)
+        record_property("cases", 120)
 
     def test_the_order_of_the_points_does_not_matter(self) -> None:
         def as_set(points: Sequence[Cell]) -> set[frozenset[Cell]]:

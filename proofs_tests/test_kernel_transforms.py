@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive, round_array
+from proofs_tests.recording import Record
 
 from exactkernel.expansions import fast_two_sum, split, two_diff, two_product, two_sum
 
@@ -38,21 +39,24 @@ class TestSums:
     """x = fl(a + b) and x + y = a + b exactly, for every pair of floats; fast_two_sum where |a| >= |b| or a = 0."""
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_two_sum(self, precision: int) -> None:
+    def test_two_sum(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         assert is_error_free(derived("two_sum", MiniFloat(precision)), a + b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_two_diff(self, precision: int) -> None:
+    def test_two_diff(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         assert is_error_free(derived("two_diff", MiniFloat(precision)), a - b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_fast_two_sum_under_its_condition(self, precision: int) -> None:
+    def test_fast_two_sum_under_its_condition(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         allowed = (abs(a) >= abs(b)) | (a == 0.0)
         a, b = a[allowed], b[allowed]
         assert is_error_free(derived("fast_two_sum", MiniFloat(precision)), a + b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
     def test_control_fast_two_sum_without_its_condition_fails(self, precision: int) -> None:
@@ -99,13 +103,15 @@ class TestProduct:
         )
 
     @pytest.mark.parametrize("precision", [4, 5, 6, 7, 8, 9, 10])
-    def test_split(self, precision: int) -> None:
+    def test_split(self, precision: int, record_property: Record) -> None:
         assert self.halves_are_short(MiniFloat(precision), all_numbers(precision, range(1)))
+        record_property("cases", 2 ** (precision - 1))
 
     @pytest.mark.parametrize("precision", [4, 5, 6, 7, 8, 9, 10])
-    def test_two_product(self, precision: int) -> None:
+    def test_two_product(self, precision: int, record_property: Record) -> None:
         a, b = self.pairs(precision)
         assert is_error_free(derived("two_product", MiniFloat(precision)), a * b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("splitter", [5.0, 9.0, 33.0, 65.0])
     def test_control_a_wrong_splitter_fails(self, splitter: float) -> None:

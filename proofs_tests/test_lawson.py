@@ -13,6 +13,7 @@ from proofs_tests import enumeration, kernel_oracle, mesh_oracle, oracles
 from proofs_tests.enumeration import COUNTS, Triangulation, canonical_triangles, grid, triangulations
 from proofs_tests.mesh_strategies import small_grid_sets
 from proofs_tests.oracles import RationalPoint
+from proofs_tests.recording import Record
 
 from exactkernel import incircle
 from exactkernel.jit import COMPILED
@@ -87,7 +88,7 @@ class TestOneFlip:
     a tie changes nothing but the slopes of 6 Phi in the lifts."""
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "cocircular octagon", "convex hexagon"])
-    def test_potential(self, name: str) -> None:
+    def test_potential(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         exact = oracles.rationals(points)
         flips = 0
@@ -109,6 +110,7 @@ class TestOneFlip:
                 assert (slopes[1] < slopes[0]) is (kernel_oracle.incircle_perturbed(a, b, c, d) > 0) or before != after
                 flips += 1
         assert flips > 10
+        record_property("cases", flips)
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex hexagon"])
     def test_flippable_is_strictly_convex(self, name: str) -> None:
@@ -161,10 +163,11 @@ class TestDescent:
     flips: an edge once gone never comes back."""
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "cocircular octagon", "convex octagon"])
-    def test_every_start(self, name: str) -> None:
+    def test_every_start(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         exact = oracles.rationals(points)
-        for start in islice(triangulations(points), 0, None, 5):
+        starts = list(islice(triangulations(points), 0, None, 5))
+        for start in starts:
             met = flip_while(points, start, is_locally_delaunay)
             assert descends(exact, met)
             assert len(met) - 1 <= len(points) * (len(points) - 1) // 2
@@ -173,6 +176,7 @@ class TestDescent:
                 edges = [{frozenset(e) for a, b, c in t for e in ((a, b), (b, c), (c, a))} for t in (before, after)]
                 gone |= edges[0] - edges[1]
                 assert not gone & edges[1]
+        record_property("cases", len(starts))
 
     def test_control_descent_can_fail(self) -> None:
         """Backwards it rises; and with ties unperturbed 6 Phi alone stands still."""
@@ -191,7 +195,7 @@ class TestCounts:
     """The enumerators find the published number of triangulations, each once and admissible; flips reach them all."""
 
     @pytest.mark.parametrize(("points", "count"), COUNTS.values(), ids=COUNTS.keys())
-    def test_published(self, points: list[tuple[int, int]], count: int) -> None:
+    def test_published(self, points: list[tuple[int, int]], count: int, record_property: Record) -> None:
         found = list(triangulations(points))
         assert len(found) == len(set(found)) == count
         exact = oracles.rationals(points)
@@ -199,9 +203,10 @@ class TestCounts:
             assert oracles.is_admissible(exact, t)
             assert oracles.covers_hull(exact, t)
             assert {v for row in t for v in row} == set(range(len(points)))
+        record_property("cases", count)
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon"])
-    def test_flip_graph_is_connected(self, name: str) -> None:
+    def test_flip_graph_is_connected(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         everything = set(triangulations(points))
         reached = {min(everything)}
@@ -216,6 +221,7 @@ class TestCounts:
                         reached.add(rows(surface))
                         frontier.append(rows(surface))
         assert reached == everything
+        record_property("cases", len(everything))
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon"])
     def test_control_one_diagonal_too_few(self, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -223,7 +229,7 @@ class TestCounts:
         empty = enumeration._empty_triangles
         monkeypatch.setattr(enumeration, "_empty_triangles", lambda points: empty(points)[1:])
         with pytest.raises(AssertionError):
-            self.test_published(*COUNTS[name])
+            self.test_published(*COUNTS[name], print)
 
 
 @pytest.mark.obligation(
@@ -236,13 +242,14 @@ class TestOneSink:
     insertion builds, and whose smallest angle is the largest of all."""
 
     @pytest.mark.parametrize(("points", "count"), CASES.values(), ids=CASES.keys())
-    def test_every_start(self, points: list[tuple[int, int]], count: int) -> None:
+    def test_every_start(self, points: list[tuple[int, int]], count: int, record_property: Record) -> None:
         expected = mesh_oracle.delaunay_triangles(oracles.rationals(points))
         inserted = delaunay(points)
         assert canonical_triangles(inserted.triangles.tolist()) == expected
         most = len(points) * (len(points) - 1) // 2
         flips = set()
-        for start in islice(triangulations(points), 0, None if count > 0 else 40, max(1, count // 500)):
+        starts = list(islice(triangulations(points), 0, None if count > 0 else 40, max(1, count // 500)))
+        for start in starts:
             mesh = lawson(points, start)
             assert canonical_triangles(mesh.triangles.tolist()) == expected
             assert mesh.work.flips <= most
@@ -250,15 +257,17 @@ class TestOneSink:
             flips.add(mesh.work.flips)
         assert len(flips) > 1
         assert mesh.canonical() == inserted.canonical()
+        record_property("cases", len(starts))
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon", "cocircular octagon"])
-    def test_smallest_angle(self, name: str) -> None:
+    def test_smallest_angle(self, name: str, record_property: Record) -> None:
         exact = oracles.rationals(COUNTS[name][0])
         best = mesh_oracle.sharpest_corner(exact, mesh_oracle.delaunay_triangles(exact))
         others = [mesh_oracle.sharpest_corner(exact, t) for t in triangulations(COUNTS[name][0])]
         assert min(others) == best
         if name != "cocircular octagon":
             assert max(others) > best
+        record_property("cases", len(others))
 
     def test_control_without_perturbation_there_are_many(self) -> None:
         """The uniqueness above comes from the perturbation: the plain test ends wherever the ties were at the start."""

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule, run_state_machine_as_test
 from mypy import api as mypy
 from proofs_tests.enumeration import grid, primal_permutations, reachable_states, triangulations
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactkernel.types import IntArray
@@ -80,15 +81,16 @@ class TestEveryState:
         assert [len(found) for found in states] == counts
         assert [len(primal_permutations(found)) for found in states] == counts
 
-    def test_axioms_and_counts(self, states: list[IntArray]) -> None:
+    def test_axioms_and_counts(self, states: list[IntArray], record_property: Record) -> None:
         for ring in (ring for found in states for ring in found):
             labels = np.zeros(len(ring) // 2, dtype=np.int32)
             surface = QuadEdge.from_arrays(ring, labels, labels.copy())  # checks the axioms
             onext = ring.tolist()
             vertices = len(cycles(onext, range(0, len(ring), 2)))
             assert surface.counts() == (vertices, len(ring) // 4, len(left_faces(onext)))
+        record_property("cases", sum(map(len, states)))
 
-    def test_euler(self, states: list[IntArray]) -> None:
+    def test_euler(self, states: list[IntArray], record_property: Record) -> None:
         genera = set()
         for onext in (ring.tolist() for ring in states[2]):
             rings, faces = cycles(onext, range(0, len(onext), 2)), left_faces(onext)
@@ -99,6 +101,7 @@ class TestEveryState:
                 assert twice_genus % 2 == 0
                 genera.add(twice_genus // 2)
         assert genera == {0, 1}  # three edges make a torus, too
+        record_property("cases", len(states[2]))
 
     def test_control_a_twisted_edge(self) -> None:
         """The ring of a twisted edge (onext leads to the same edge flipped over) is refused: nothing but orientable
@@ -117,7 +120,7 @@ class TestOperators:
     of onext, lnext = oprev sym, dnext = sym onext sym, and so on; each next is the inverse of its prev."""
 
     @pytest.mark.parametrize("k", [1, 2, 3])
-    def test_definitions(self, k: int, states: list[IntArray]) -> None:
+    def test_definitions(self, k: int, states: list[IntArray], record_property: Record) -> None:
         for ring in states[k - 1]:
             onext = ring.tolist()
             oprev = inverse(onext)
@@ -135,6 +138,7 @@ class TestOperators:
                 assert {operator: operator(ring, q) for operator in expected} == expected
                 if q % 2 == 0:
                     assert algebra.left_next(ring, q) == oprev[q ^ 2]
+        record_property("cases", len(states[k - 1]) * 4 * k)
 
     def test_turns(self) -> None:
         for q in range(16):
@@ -168,7 +172,7 @@ class TestOperators:
         other = getattr(algebra, wrong)
         monkeypatch.setattr(algebra, name, lambda ring, q: other(ring, q))
         with pytest.raises(AssertionError):
-            self.test_definitions(2, states)
+            self.test_definitions(2, states, print)
 
 
 @pytest.mark.obligation(
@@ -178,7 +182,8 @@ class TestSplice:
     """Splice is its own inverse; it joins two origins or cuts one, and the same with the left faces."""
 
     @pytest.mark.parametrize("k", [1, 2, 3])
-    def test_involution(self, k: int, states: list[IntArray]) -> None:
+    def test_involution(self, k: int, states: list[IntArray], record_property: Record) -> None:
+        tried = 0
         for ring in states[k - 1]:
             onext = ring.tolist()
             rings, faces = cycles(onext, range(0, 4 * k, 2)), left_faces(onext)
@@ -192,6 +197,8 @@ class TestSplice:
                 assert not any(breaks_axioms(after.tolist(), q) for q in range(4 * k))
                 algebra.splice(after, a, b)
                 assert (after == ring).all()
+                tried += 1
+        record_property("cases", tried)
 
     def test_primal_with_dual_is_refused(self) -> None:
         surface = QuadEdge()
@@ -213,7 +220,7 @@ class TestSplice:
 
         monkeypatch.setattr(algebra, "splice", primal_only)
         with pytest.raises(AssertionError):
-            self.test_involution(2, states)
+            self.test_involution(2, states, print)
 
 
 def breaks_axioms(ring: Permutation, q: int) -> bool:
@@ -232,14 +239,16 @@ def breaks_axioms(ring: Permutation, q: int) -> bool:
 class TestCheck:
     """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
 
-    def test_control_every_corruption(self, states: list[IntArray]) -> None:
+    def test_control_every_corruption(self, states: list[IntArray], record_property: Record) -> None:
         """Every entry of every state replaced by every other value, holes and out of range included."""
         labels = np.zeros(4, dtype=np.int32)
+        tried = 0
         for ring in states[1]:
             for q in range(len(ring)):
                 for wrong in (value for value in range(-2, len(ring) + 2) if value != ring[q]):
                     corrupt = ring.copy()
                     corrupt[q] = wrong
+                    tried += 1
                     with pytest.raises(TopologyError, match=r"quarter-edge \d+") as raised:
                         QuadEdge.from_arrays(corrupt, labels, labels.copy())
                     entries = corrupt.tolist()
@@ -248,6 +257,7 @@ class TestCheck:
                         assert named == next(q for q in range(len(entries)) if breaks_axioms(entries, q))
                     else:  # a hole: whoever leads there, or lies beside it
                         assert breaks_axioms(entries, named) or entries[named] == -1 or entries[entries[named]] == -1
+        record_property("cases", tried)
 
 
 def small_surfaces() -> Iterator[QuadEdge]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from proofs_tests import oracles
 from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.recording import Record
 
 from exactmesh.verify import Orientation, Property, Verdict, verify
 
@@ -112,10 +113,12 @@ class TestEverySetOfFivePoints:
     two documented ones are ever undecided."""
 
     @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
-    def test_verdicts(self, points: Points) -> None:
+    def test_verdicts(self, points: Points, record_property: Record) -> None:
         brute = BruteForce(points)
-        for triangles in all_sets(brute):
+        sets = list(all_sets(brute))
+        for triangles in sets:
             assert not disagreements(brute, points, triangles), triangles
+        record_property("cases", len(sets))
 
     def test_brute_force_accepts_and_rejects_each_property(self) -> None:
         """The enumeration is not vacuous: each property is true of some set, and all but the first two false
@@ -149,7 +152,7 @@ class TestRandomSets:
     triangles, collinear and coincident points."""
 
     @pytest.mark.parametrize("seed", range(40))
-    def test_any_order_of_corners(self, seed: int) -> None:
+    def test_any_order_of_corners(self, seed: int, record_property: Record) -> None:
         random = Random(seed)
         n = random.choice((6, 7))
         points = [(random.randrange(4), random.randrange(4)) for _ in range(n)]
@@ -158,9 +161,10 @@ class TestRandomSets:
             triangles = random_triangles(random, n, random.randrange(1, 7))
             for orientation in Orientation:
                 assert not disagreements(brute, points, triangles, orientation), (points, triangles)
+        record_property("cases", 10 * len(Orientation))
 
     @pytest.mark.parametrize("seed", range(60))
-    def test_nearly_admissible(self, seed: int) -> None:
+    def test_nearly_admissible(self, seed: int, record_property: Record) -> None:
         """Sets grown by adding triangles that meet the others admissibly, and one that need not: the hard
         negatives."""
         random = Random(seed)
@@ -176,6 +180,7 @@ class TestRandomSets:
             ):
                 triangles.append(t)
                 assert not disagreements(brute, points, triangles), (points, triangles)
+        record_property("cases", len(triangles))
 
 
 #: Meshes whose faults no local check sees; each with the kind of its violation.

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from proofs_tests import oracles
 from proofs_tests.corrupted_oracle import Area, Case, Truth
+from proofs_tests.recording import Record
 from proofs_tests.test_verify_constrained import Plain
 
 from exactmesh.errors import OptionError
@@ -319,8 +320,9 @@ class TestTenThousand:
     @pytest.mark.parametrize(
         "seed", [pytest.param(seed, marks=[pytest.mark.compiled] if seed else []) for seed in range(CHUNKS)]
     )
-    def test_verdicts(self, seed: int) -> None:
+    def test_verdicts(self, seed: int, record_property: Record) -> None:
         assert next(contradictions(seed), None) is None
+        record_property("cases", EACH)
 
     def test_there_are_ten_thousand(self) -> None:
         assert CHUNKS * EACH == 10_000

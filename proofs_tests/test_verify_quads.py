@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 from proofs_tests import cells_oracle, domain_oracle, oracles
 from proofs_tests.cells_oracle import Cell
+from proofs_tests.recording import Record
 from proofs_tests.test_kernel_compiled import in_a_child
 
 from exactkernel import ShapeError, Sign
@@ -120,10 +121,12 @@ class TestEverySmallSet:
     brute force on polygons."""
 
     @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
-    def test_verdicts(self, points: Points) -> None:
-        for i, chosen in enumerate(some_sets(points, 60)):
+    def test_verdicts(self, points: Points, record_property: Record) -> None:
+        some = list(some_sets(points, 60))
+        for i, chosen in enumerate(some):
             orientation = Orientation.ANY if i % 2 else Orientation.CCW
             assert not disagreements(points, chosen, orientation), (chosen, orientation)
+        record_property("cases", len(some))
 
     @pytest.mark.parametrize("name", ["two inside", "a point inside an edge", "the centre of a square"])
     def test_cutting_convex_ones_changes_nothing(self, name: str) -> None:
