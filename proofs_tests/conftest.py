@@ -1,9 +1,11 @@
 """Hypothesis profiles, and the lane that the tests run in."""
 
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, Phase, settings
+from proofs_tests.obligations.recorder import Recorder
 
 from exactkernel.jit import COMPILED
 
@@ -15,6 +17,20 @@ settings.register_profile(
 )
 settings.register_profile("deep", _patient, max_examples=20000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite" if COMPILED else "interpreted"))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("obligations")
+    group.addoption("--record-obligations", type=Path, metavar="PATH", help="write cases and seconds to this file")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    path: Path | None = config.getoption("--record-obligations")
+    if path is None:
+        return
+    if not COMPILED:
+        raise pytest.UsageError("--record-obligations is about the compiled lane: unset NUMBA_DISABLE_JIT")
+    config.pluginmanager.register(Recorder(path.resolve(), writes=not hasattr(config, "workerinput")))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

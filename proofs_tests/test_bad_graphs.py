@@ -314,7 +314,9 @@ CULPRIT = r"point|segment|hole|region|marker|attribute|face|rule"
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "a mutated graph has a right result, or a typed error that names the culprit")
+@pytest.mark.obligation(
+    "M5", "a mutated graph has a right result, or a typed error that names the culprit", method="property-based"
+)
 class TestMutations:
     """However a good graph is changed, the result is that of brute force, or a typed error names something of it."""
 

@@ -47,7 +47,11 @@ def same(builder: TriangulationBuilder) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "every sequence of edits ends in the constrained Delaunay triangulation of what is left")
+@pytest.mark.obligation(
+    "M5",
+    "every sequence of edits ends in the constrained Delaunay triangulation of what is left",
+    method="stateful machine",
+)
 class TestEditing:
     """After every step, the builder's triangulation is the one that is built at once from the model's points and
     segments; errors name exactly the segments that the model says, and change nothing."""
@@ -57,6 +61,7 @@ class TestEditing:
 
     @pytest.mark.parametrize("fault", ["unflipped", "unconstrained", "half a segment", "forgotten group"])
     def test_control_a_seeded_fault_is_found(self, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Edges left unflipped, segments left unconstrained or inserted by half, a group of edits forgotten."""
         name, faulty = FAULTS[fault]
         real = getattr(module, name)
         monkeypatch.setattr(module, name, lambda draft, *rest: faulty(real, draft, *rest))
@@ -127,7 +132,9 @@ HUBS = dict(hubs())
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "deleting vertices, however many neighbors they have, leaves what the others alone have")
+@pytest.mark.obligation(
+    "M5", "deleting vertices, however many neighbors they have, leaves what the others alone have", method="named cases"
+)
 class TestDeletion:
     """Whatever vertex goes, inside, on the hull or on a straight side of it, the others keep their numbers, and their
     triangulation is theirs alone."""
@@ -188,7 +195,9 @@ def predicates_of_deletion(shape: str, n: int) -> int:
     )
 
 
-@pytest.mark.obligation("M5", "the straight walk ends in the triangle of its target, Delaunay or not, hull or not")
+@pytest.mark.obligation(
+    "M5", "the straight walk ends in the triangle of its target, Delaunay or not, hull or not", method="enumeration"
+)
 class TestStraightWalk:
     """From every vertex, to every point of a fine grid, within the hull and beyond: the closed triangle on the left of
     the edge holds the target, and what is said of edge and vertex is so."""
@@ -233,8 +242,24 @@ class TestStraightWalk:
         if w != plane.ghost:
             assert oracles.orient(exact[v], exact[w], target) > 0 < oracles.orient(exact[w], exact[u], target)
 
+    def test_control_the_triangle_beside_it(self) -> None:
+        """A walk that ends on the other side of its last edge."""
+        points = [(float(x), float(y)) for x, y in grid(3, 3)]
+        builder = TriangulationBuilder(points)
+        p = builder.insert_point(9.0, 9.0)
+        builder.delete_vertex(p)
+        plane, exact = builder._draft.plane, oracles.rationals(points)
+        plane.xy[2 * p : 2 * p + 2] = 0.75, 0.5
+        e, where = walk(plane, 0, p)
+        target = oracles.rationals([(0.75, 0.5)])[0]
+        self.check(builder, e, where, exact, target)
+        with pytest.raises(AssertionError):
+            self.check(builder, e ^ 2, where, exact, target)
 
-@pytest.mark.obligation("M5", "a builder made of a graph or a triangulation holds the same")
+
+@pytest.mark.obligation(
+    "M5", "a builder made of a graph or a triangulation holds the same", method="named cases", control_in="TestEditing"
+)
 class TestMaking:
     """Made of a graph, of a triangulation or by steps in any order, it is the same; and what is frozen stays so."""
 

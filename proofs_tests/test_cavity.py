@@ -95,7 +95,9 @@ def bad_edges(mesh: Triangulation) -> list[tuple[int, int]]:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "a long segment leaves a triangulation that is locally Delaunay beside it")
+@pytest.mark.obligation(
+    "M5", "a long segment leaves a triangulation that is locally Delaunay beside it", method="named cases"
+)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("n", [10, 33, 100, 1000])
 class TestLongSegment:
@@ -174,7 +176,9 @@ def compare() -> tuple[int, int, int]:
     return len(results), results.count(False), unequal
 
 
-@pytest.mark.obligation("M5", "search and chance fill a cavity with the same triangles, and chance does not fail")
+@pytest.mark.obligation(
+    "M5", "search and chance fill a cavity with the same triangles, and chance does not fail", method="differential"
+)
 class TestBothWays:
     """Cavities of convex, flat, random and lattice chains, with dangling vertices, filled by search alone and by chance
     alone, are the same; the check that follows chance holds in all of them. Interpreted, in a child process."""
@@ -213,7 +217,12 @@ _MOST = 80.0  # predicates a vertex: the patience of the search, then about a do
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("M5", "the work of a long segment grows linearly, counted in predicates")
+@pytest.mark.obligation(
+    "M5",
+    "the work of a long segment grows linearly, counted in predicates",
+    method="named cases",
+    control_in="TestGrowthOfSearch",
+)
 @pytest.mark.parametrize("name", NAMES)
 class TestGrowth:
     """A segment that crosses the edges of n vertices asks at most a constant number of predicates for each."""

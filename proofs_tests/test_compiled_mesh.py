@@ -20,7 +20,11 @@ ROOT = Path(__file__).parents[1]
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "the mesh algorithms return the same bits compiled and interpreted, and do the same work")
+@pytest.mark.obligation(
+    "J1",
+    "the mesh algorithms return the same bits compiled and interpreted, and do the same work",
+    method="bit for bit",
+)
 class TestLanes:
     """Insertion, flips, location, order, quad-edge and segments return the same bits compiled, in this process and a
     later one, and interpreted; the predicates were decided by the same stages."""
@@ -31,6 +35,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.mesh_digest", NUMBA_DISABLE_JIT=disable) == here
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         points = mesh_digest.inputs()["uniform"]
         moved = points.copy()
         moved[7, 0] = np.nextafter(moved[7, 0], 2.0)
@@ -49,7 +54,9 @@ class TestBounds:
 
 @pytest.mark.compiled
 @pytest.mark.obligation(
-    "J1", "there is no fused multiply-add in the machine code of insertion, flips, location and segments"
+    "J1",
+    "there is no fused multiply-add in the machine code of insertion, flips, location and segments",
+    method="machine code",
 )
 class TestMachineCode:
     """No loop over the mesh contains a fused multiply-add in the filters that were copied into it."""
@@ -116,7 +123,7 @@ except KeyboardInterrupt:
 
 @pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="no SIGINT for a child process")
-@pytest.mark.obligation("J1", "Ctrl-C ends a long compiled run, and the library works on")
+@pytest.mark.obligation("J1", "Ctrl-C ends a long compiled run, and the library works on", method="named cases")
 class TestInterrupt:
     """SIGINT in the middle of a run that would take minutes ends it with KeyboardInterrupt; what is computed
     afterwards is what it would have been."""

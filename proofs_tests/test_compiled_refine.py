@@ -18,7 +18,9 @@ ROOT = Path(__file__).parents[1]
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "refinement returns the same bits compiled and interpreted, and accounts for the same")
+@pytest.mark.obligation(
+    "J1", "refinement returns the same bits compiled and interpreted, and accounts for the same", method="bit for bit"
+)
 class TestLanes:
     """Angles, areas, sizes and circles of right and small angles, holes, regions and extreme coordinates: the same
     points in the same order, for the same reasons, compiled and interpreted."""
@@ -28,6 +30,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.refine_digest", NUMBA_DISABLE_JIT="1") == here
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         domain = refine_digest.domains()["star"]
         points = domain.points.copy()
         points[5, 0] = np.nextafter(points[5, 0], 9.0)
@@ -46,7 +49,12 @@ class TestBounds:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of refinement")
+@pytest.mark.obligation(
+    "J1",
+    "there is no fused multiply-add in the machine code of refinement",
+    method="machine code",
+    control_in="proofs_tests/test_compiled_mesh.py::TestMachineCode",
+)
 class TestMachineCode:
     """The loop that refines contains no fused multiply-add in the filters that were copied into it."""
 
@@ -81,7 +89,12 @@ except KeyboardInterrupt:
 
 @pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="no SIGINT for a child process")
-@pytest.mark.obligation("J1", "Ctrl-C ends a long refinement, and the library works on")
+@pytest.mark.obligation(
+    "J1",
+    "Ctrl-C ends a long refinement, and the library works on",
+    method="named cases",
+    control_in="proofs_tests/test_compiled_mesh.py::TestInterrupt",
+)
 class TestInterrupt:
     """SIGINT in the middle of a run that would make a hundred million points ends it with KeyboardInterrupt; what is
     computed afterwards is what it would have been."""

@@ -62,7 +62,9 @@ def is_found(task: Task, name: str, law: str, outcome: str) -> bool:
 
 
 @pytest.mark.compiled  # nothing of it is: once is enough
-@pytest.mark.obligation("B1", "the conformance suite finds every planted fault within its default budget")
+@pytest.mark.obligation(
+    "B1", "the conformance suite finds every planted fault within its default budget", method="named cases"
+)
 class TestPlantedFaults:
     """Law: within its default budget the suite finds the fault of each of thirty faulty meshers, and tells it by its
     name; it finds none in a mesher that has none."""
@@ -73,6 +75,7 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("name", ["right", "noisy"])
     def test_control_no_fault_is_found_where_there_is_none(self, name: str) -> None:
+        """None: a right mesher, and one that prints, are acquitted."""
         result = check(f"{PLACE}:{name}", max_size=12, max_examples=60, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
@@ -80,13 +83,16 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_has_none(self, task: Task) -> None:
+        """None: exactmesh is acquitted."""
         result = check("exactmesh", kind=task, max_size=20, max_examples=40, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
 
 
 @pytest.mark.obligation(
-    "B2", "what was found is told as the smallest input, which shows the same when it is tried again"
+    "B2",
+    "what was found is told as the smallest input, which shows the same when it is tried again",
+    method="named cases",
 )
 class TestCounterexamples:
     """Law: of a law that is broken the worst breach is told, by an input from which nothing can be left out, and which,
@@ -111,6 +117,7 @@ class TestCounterexamples:
         assert again.outcome(law) is ruling.outcome
 
     def test_control_a_larger_input_is_not_the_smallest(self) -> None:
+        """An input of ten points, which shows the same fault as the smallest."""
         result = retry(
             f"{PLACE}:drops_a_point", [(0, 0), (1, 0), (0, 1), (5, 5), (7, 3), (2, 9), (3, 3), (8, 1), (9, 9), (4, 0)]
         )
@@ -164,7 +171,9 @@ def failures(cases: dict[str, Case]) -> list[object]:
     ]
 
 
-@pytest.mark.obligation("B3", "the known failures of other meshers are found; exactmesh has none of them")
+@pytest.mark.obligation(
+    "B3", "the known failures of other meshers are found; exactmesh has none of them", method="named cases"
+)
 class TestCorpus:
     """Law: the verifier finds every failure of the corpus, and none in exactmesh's answers to the same inputs."""
 
@@ -177,6 +186,7 @@ class TestCorpus:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_does_not_fail(self, task: Task) -> None:
+        """None: exactmesh is acquitted on the same inputs."""
         cases = [case for case in CORPUS.values() if case.task is task and case.name != "9"]
         with MesherProcess(resolved("exactmesh", task)[0], Limits(60.0), segments=task is not Task.POINTS) as process:
             trial = Trial(process, task, "ccw")

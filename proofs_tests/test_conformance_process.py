@@ -33,7 +33,9 @@ def is_legal(given: Given) -> bool:
     return True
 
 
-@pytest.mark.obligation("B4", "whatever a mesher does to its process, the next input is tried, and this process lives")
+@pytest.mark.obligation(
+    "B4", "whatever a mesher does to its process, the next input is tried, and this process lives", method="named cases"
+)
 class TestWhateverItDoes:
     """Law: a mesher may end its process, crash, hang, raise or eat memory; what it did is told, and it answers the next
     input as if nothing had happened."""
@@ -144,8 +146,8 @@ class TestWhateverItDoes:
         assert answer.fate is fate
 
     @pytest.mark.parametrize(("each_time", "fate"), [(False, Fate.ANSWERED), (True, Fate.HUNG)])
-    def test_it_may_compile_after_each_restart(self, tmp_path: Path, each_time: bool, fate: Fate) -> None:
-        """The control is as slow in every call."""
+    def test_control_it_may_compile_after_each_restart(self, tmp_path: Path, each_time: bool, fate: Fate) -> None:
+        """A mesher that is slow in every call, not in the first one after a restart only."""
         tmp_path.joinpath("compiles.py").write_text(
             "import os, time\nstate = []\ndef mesh(points):\n"
             f"    if {each_time} or not state:\n        state.append(time.sleep(3.0))\n"

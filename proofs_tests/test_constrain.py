@@ -19,6 +19,7 @@ from proofs_tests.enumeration import CIRCLE_OF_EIGHT, COUNTS, Triangulation, can
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.oracles import RationalPoint, Triangle
 from proofs_tests.pslg_strategies import Graph, graphs
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactmesh import PSLG, ExactMeshError, constrained_delaunay, delaunay, verify
@@ -91,7 +92,12 @@ def segments_of(edges: Iterable[Edge]) -> list[Segment]:
     return [(min(edge), max(edge)) for edge in edges]
 
 
-@pytest.mark.obligation("M5", "constrained flips lead from every constrained triangulation to one: ours")
+@pytest.mark.obligation(
+    "M5",
+    "constrained flips lead from every constrained triangulation to one: ours",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
+)
 @pytest.mark.parametrize("name", SETS)
 class TestOneSink:
     """Flips of edges that are not locally Delaunay lead to triangulations, and never in a circle; whatever edges are
@@ -106,26 +112,34 @@ class TestOneSink:
             waiting -= done
         assert all(after in graph.all for flips in graph.all.values() for after in flips.values())
 
-    def test_unique(self, name: str) -> None:
+    def test_unique(self, name: str, record_property: Record) -> None:
         graph = FlipGraph(SETS[name])
-        for fixed in graph.constraints():
+        every = list(graph.constraints())
+        for fixed in every:
             assert len(graph.sinks(fixed)) == 1
+        record_property("cases", len(every))
 
-    def test_ours(self, name: str) -> None:
+    def test_ours(self, name: str, record_property: Record) -> None:
         graph = FlipGraph(SETS[name])
-        every = 1 if COMPILED else 17
-        for fixed in list(graph.constraints())[::every]:
+        some = list(graph.constraints())[:: 1 if COMPILED else 17]
+        for fixed in some:
             assert [ours(SETS[name], segments_of(fixed))] == graph.sinks(fixed)
+        record_property("cases", len(some))
 
-    def test_by_visibility(self, name: str) -> None:
+    def test_by_visibility(self, name: str, record_property: Record) -> None:
         """The sink is what visibility says."""
         graph = FlipGraph(SETS[name])
         every = list(graph.constraints())
         for fixed in every[:: 1 + len(every) // 30]:
             assert [constrained_oracle.constrained_triangles(graph.points, segments_of(fixed))] == graph.sinks(fixed)
+        record_property("cases", len(every[:: 1 + len(every) // 30]))
 
 
-@pytest.mark.obligation("M5", "no vertex in the circle of a triangle sees it past the segments, and so for no other")
+@pytest.mark.obligation(
+    "M5",
+    "no vertex in the circle of a triangle sees it past the segments, and so for no other",
+    method="property-based",
+)
 class TestVisibility:
     """The triangles of the hull are those, over all triples, that no segment cuts and whose perturbed circle contains
     no vertex that they see: for grids, cocircular, collinear and extreme points, overlaps, T-junctions, duplicates."""
@@ -162,7 +176,9 @@ class TestVisibility:
         assert not constrained_oracle.is_visible(points, [frozenset(wall[0])], (0, 1, 4), 5)
 
 
-@pytest.mark.obligation("M5", "every segment is a chain of constrained edges, and nothing else is constrained")
+@pytest.mark.obligation(
+    "M5", "every segment is a chain of constrained edges, and nothing else is constrained", method="property-based"
+)
 class TestSegmentsArePresent:
     """The constrained edges are the pieces into which vertices cut the segments; segment_incidence has one row for each
     piece of each segment; chain(i) leads along segment i from its start to its end."""
@@ -212,26 +228,32 @@ class TestSegmentsArePresent:
             assert len(mesh.segments) == pieces
 
 
-@pytest.mark.obligation("M5", "the result depends on no order and on no seed")
+@pytest.mark.obligation(
+    "M5", "the result depends on no order and on no seed", method="enumeration", control_in="TestFaultsAreFound"
+)
 class TestEveryOrder:
     """Any order of points, any order and direction of segments, and any seed give the same triangulation."""
 
     POINTS: tuple[Point, ...] = ((0, 0), (4, 0), (4, 2), (0, 2), (1, 1), (2, 1), (3, 1))
     SEGMENTS: tuple[Segment, ...] = ((0, 2), (4, 6), (1, 6), (4, 3))
 
-    def test_every_order_of_segments(self) -> None:
+    def test_every_order_of_segments(self, record_property: Record) -> None:
         expected = ours(self.POINTS, self.SEGMENTS)
-        for order in permutations(self.SEGMENTS):
+        orders = list(permutations(self.SEGMENTS))
+        for order in orders:
             for mask in range(1 << len(order)):
                 turned = [(b, a) if mask >> i & 1 else (a, b) for i, (a, b) in enumerate(order)]
                 assert ours(self.POINTS, turned) == expected
+        record_property("cases", len(orders) << len(self.SEGMENTS))
 
-    def test_every_order_of_points(self) -> None:
+    def test_every_order_of_points(self, record_property: Record) -> None:
         expected = constrained_delaunay(PSLG(self.POINTS, self.SEGMENTS), carve=False).canonical()
-        for order in list(permutations(range(7)))[:: 7 if COMPILED else 210]:
+        orders = list(permutations(range(7)))[:: 7 if COMPILED else 210]
+        for order in orders:
             segments = [(order.index(a), order.index(b)) for a, b in self.SEGMENTS]
             pslg = PSLG([self.POINTS[i] for i in order], segments)
             assert constrained_delaunay(pslg, carve=False).canonical() == expected
+        record_property("cases", len(orders))
 
     @given(graphs(), st.integers(0, 2**64), st.randoms(use_true_random=False))
     @settings(max_examples=80)
@@ -262,7 +284,9 @@ class TestEveryOrder:
         assert ours(places, [(a, b) for a, b in plain.edges.tolist()]) == canonical_triangles(plain.triangles.tolist())
 
 
-@pytest.mark.obligation("M5", "the corpus: near-concurrent segments, split, are constrained Delaunay, and admissible")
+@pytest.mark.obligation(
+    "M5", "the corpus: near-concurrent segments, split, are constrained Delaunay, and admissible", method="named cases"
+)
 class TestCorpus:
     """Number 7 of the corpus of other meshers' failures, and its 150 bundles: of those Triangle fails on 129."""
 
@@ -281,12 +305,15 @@ class TestCorpus:
             assert self.verified(PSLG(*bundle(seed))), seed
 
     def test_control_a_flipped_edge_is_found(self) -> None:
+        """A segment that the mesh does not have."""
         mesh = constrained_delaunay(PSLG(*bundle(0)), carve=False, crossings="split")
         assert verify(mesh.points, mesh.triangles, segments=mesh.segments).ok
         assert not verify(mesh.points, mesh.triangles, segments=[(int(mesh.hull[0]), int(mesh.hull[2]))]).ok
 
 
-@pytest.mark.obligation("M5", "segments that cross are refused, whatever the order, and only those")
+@pytest.mark.obligation(
+    "M5", "segments that cross are refused, whatever the order, and only those", method="property-based"
+)
 class TestCrossings:
     """Segments are refused exactly when two of them meet in one point inside both that is no vertex; all these pairs
     are named, and no others."""
@@ -360,16 +387,23 @@ class Pairs:
         return [pair for pair, result in self.expected.items() if self.ours(pair) != result]
 
 
-@pytest.mark.obligation("M5", "any two segments on a grid, or between cocircular points, give what brute force gives")
+@pytest.mark.obligation(
+    "M5",
+    "two segments on a grid or between cocircular points, one pair in five, give what brute force gives",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
+)
 @pytest.mark.parametrize("points", [grid(3, 3), grid(2, 4), CIRCLE_OF_EIGHT], ids=["3 x 3", "2 x 4", "octagon"])
 class TestEveryPair:
-    """Any two segments: refused exactly when they cross in no vertex, else the triangles and pieces of brute force."""
+    """Two segments, one pair in five: refused exactly when they cross in no vertex, else the triangles and pieces of
+    brute force."""
 
-    def test_brute_force(self, points: list[tuple[int, int]]) -> None:
+    def test_brute_force(self, points: list[tuple[int, int]], record_property: Record) -> None:
         pairs = Pairs(points, 5 if COMPILED else 11)
         assert not pairs.disagreements()
         refused = list(pairs.expected.values()).count("crossing")
         assert 0 < refused < len(pairs.expected) / 2
+        record_property("cases", len(pairs.expected))
 
 
 FAULTY = """
@@ -399,11 +433,14 @@ FAULTS = {
 }
 
 
-@pytest.mark.obligation("M5", "a constrained insertion with a seeded fault is found by the enumeration")
+@pytest.mark.obligation(
+    "M5", "a constrained insertion with a seeded fault is found by the enumeration", method="mutation"
+)
 class TestFaultsAreFound:
     """The comparison with brute force rejects seeded faults: run in a child process, interpreted."""
 
     def test_control_faults(self) -> None:
+        """Lines of the insertion changed, one by one; each makes the enumeration disagree, none does not."""
         child = subprocess.run(
             [sys.executable, "-c", FAULTY],
             env={**os.environ, "NUMBA_DISABLE_JIT": "1"},

@@ -35,7 +35,9 @@ def found(
     return [(i, j, kind) for (i, j), kind in zip(pairs.pairs.tolist(), pairs.kinds.tolist(), strict=True)]
 
 
-@pytest.mark.obligation("ARR1", "the pairs of segments that meet, and how, are those of brute force")
+@pytest.mark.obligation(
+    "ARR1", "the pairs of segments that meet, and how, are those of brute force", method="property-based"
+)
 class TestPairs:
     """find_crossings returns exactly the pairs that meet elsewhere than in an end of both, each with its kind."""
 
@@ -74,6 +76,7 @@ class TestPairs:
         assert found(through, segments) == oracle.true_pairs(through.tolist(), segments)
 
     def test_control_a_pair_left_out_is_noticed(self) -> None:
+        """A pair of crossing segments left out; overlaps, touches and common ends taken for each other."""
         points, segments = SEVEN.tolist(), [(0, 1), (2, 3), (4, 5)]
         assert found(points, segments[:2]) != oracle.true_pairs(points, segments)
         assert oracle.true_pairs([(0, 0), (2, 0), (1, 0), (3, 0)], [(0, 1), (2, 3)]) == [(0, 1, oracle.OVERLAP)]
@@ -81,7 +84,9 @@ class TestPairs:
         assert oracle.true_pairs([(0, 0), (2, 0), (2, 0), (3, 0)], [(0, 1), (2, 3)]) == []
 
 
-@pytest.mark.obligation("ARR2", "a crossing goes to the nearest doubles, or into its own grid cell")
+@pytest.mark.obligation(
+    "ARR2", "a crossing goes to the nearest doubles, or into its own grid cell", method="property-based"
+)
 class TestRounding:
     """What is certified in double-double, and what the rationals decide, is the nearest double and the right cell."""
 
@@ -109,6 +114,7 @@ class TestRounding:
         assert [tuple(cell) for cell in cells] == [oracle.pixel(p, grid) for p in crossings]
 
     def test_control_a_neighbour_is_not_the_nearest(self) -> None:
+        """The double beside the nearest one."""
         exact = Fraction(1, 3)
         assert oracle.is_nearest(1 / 3, exact)
         assert not oracle.is_nearest(float(np.nextafter(1 / 3, 1.0)), exact)
@@ -150,7 +156,9 @@ def faults(a: Arrangement) -> list[str]:
 
 
 @pytest.mark.obligation(
-    "ARR3", "the rounded arrangement is planar, within its stated distance, and noding it changes nothing"
+    "ARR3",
+    "the rounded arrangement is planar, within its stated distance, and noding it changes nothing",
+    method="property-based",
 )
 class TestArrangement:
     """Whatever the segments: the result is planar by brute force; every chain leads along its segment, within half the
@@ -216,6 +224,7 @@ class TestArrangement:
         assert not oracle.is_planar(vertices, sorted(pieces))
 
     def test_control_wrong_arrangements_are_noticed(self) -> None:
+        """Segments left unsplit, a point moved, a chain too far away, a row of the incidence lost."""
         square = PSLG([(0, 0), (4, 4), (0, 4), (4, 0), (2, 2)], [(0, 1), (2, 3)])
         good = arrange(square)
         assert faults(good) == []
@@ -232,7 +241,9 @@ class TestArrangement:
 
 
 @pytest.mark.obligation(
-    "ARR4", "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets"
+    "ARR4",
+    "snap rounding is that of brute force: hot pixels, and chains through all that a segment meets",
+    method="property-based",
 )
 class TestSnapping:
     """Of any drawing: the vertices are the centres of the pixels with a point or a crossing in them, and each chain
@@ -267,6 +278,7 @@ class TestSnapping:
         assert oracle.is_planar(whole.points.tolist(), pieces_of(chains).ends.tolist())
 
     def test_control_a_segment_not_led_through_a_hot_pixel(self) -> None:
+        """Pixels beside the segment, and corners that do not belong to a pixel."""
         slanted = ((Fraction(0), Fraction(0)), (Fraction(10), Fraction(1)))
         assert oracle.segment_meets_pixel(slanted, (5, 0), (1.0, 1.0))
         assert not oracle.segment_meets_pixel(slanted, (4, 1), (1.0, 1.0))
@@ -290,7 +302,9 @@ def is_moved(arranged: Arrangement) -> list[bool]:
     return [bool((p != q).any()) for p, q in zip(arranged.pslg.points[: len(given)], given, strict=True)]
 
 
-@pytest.mark.obligation("ARR6", "snapping is local: planar and within its distance, and nothing far from it moves")
+@pytest.mark.obligation(
+    "ARR6", "snapping is local: planar and within its distance, and nothing far from it moves", method="property-based"
+)
 class TestLocality:
     """However few segments are snapped, all are planar together and within their distance; and a point stays that is no
     end of a segment which comes near one that is snapped."""
@@ -331,6 +345,7 @@ class TestLocality:
         assert not any(is_moved(arranged)[n:])
 
     def test_control_all_snapped_moves_far_points(self) -> None:
+        """Everything snapped, wherever it is."""
         (points, pairs), far = bundle(26), [(0.1, 7.3), (3.3, 0.3)]
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(planar, "_SNAPS", 0)
@@ -339,7 +354,9 @@ class TestLocality:
         assert any(is_moved(arranged)[len(points) :])
 
 
-@pytest.mark.obligation("ARR7", "the neighbourhood that is searched again holds every box that meets a changed one")
+@pytest.mark.obligation(
+    "ARR7", "the neighbourhood that is searched again holds every box that meets a changed one", method="differential"
+)
 class TestNeighbourhood:
     """nearby returns at least those segments whose boxes, widened by the margin, meet one that is given."""
 
@@ -377,6 +394,7 @@ class TestNeighbourhood:
             assert near == sorted(set(near))
 
     def test_control_one_left_out(self) -> None:
+        """A neighbour left out."""
         begins, ends = np.array([(0.0, 0.0), (1.0, 1.0), (3.0, 3.0)]), np.array([(1.0, 1.0), (2.0, 2.0), (4.0, 4.0)])
         assert self.missing(begins, ends, 0.0, [0], [0]) == [1]
         assert self.missing(begins, ends, 1.0, [0], [0]) == [1, 2]
@@ -390,7 +408,9 @@ class TestNeighbourhood:
         assert len(nearby.nearby(boxes, np.array([3, 77, 500]))) < 50
 
 
-@pytest.mark.obligation("ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost")
+@pytest.mark.obligation(
+    "ARR5", "bad input, too much output, and attributes: typed errors, and nothing lost", method="named cases"
+)
 class TestBoundary:
     """Faults are named; what would fill the machine is refused; markers, attributes, holes and regions come along."""
 
@@ -453,3 +473,9 @@ class TestBoundary:
         assert arranged.pslg.segments.tolist() == [[0, 2], [2, 3], [3, 1]]
         assert arranged.incidence.tolist() == [[0, 0], [0, 2], [1, 0], [1, 1], [2, 0]]
         assert arranged.chain(1).tolist() == [3, 2]
+
+    def test_control_good(self) -> None:
+        """None: the same without the fault is taken."""
+        assert len(find_crossings([(0, 0), (1, 0), (0, 1)], [(0, 1), (1, 2)])) == 0
+        points, segments = bundle(26)
+        assert len(find_crossings(points, segments)) > 0

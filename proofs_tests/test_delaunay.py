@@ -16,6 +16,7 @@ from proofs_tests import mesh_oracle, oracles
 from proofs_tests.enumeration import canonical_triangles, grid
 from proofs_tests.kernel_strategies import Point
 from proofs_tests.mesh_strategies import point_sets
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactkernel.types import FloatArray, Stage
@@ -71,7 +72,12 @@ def triples(rows: list[list[int]]) -> list[tuple[int, int, int]]:
     return sorted((a, b, c) for a, b, c in rows)
 
 
-@pytest.mark.obligation("M4", "insertion equals brute force on every subset of a 4 x 4 grid, in random orders")
+@pytest.mark.obligation(
+    "M4",
+    "insertion equals brute force on every subset of a 4 x 4 grid, in random orders",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
+)
 class TestAllSubsetsOfAGrid:
     """For every subset of a grid, inserted in a random order, the triangles are those whose perturbed circles are
     empty, found by looking at all triples; subsets of a line are refused."""
@@ -81,12 +87,15 @@ class TestAllSubsetsOfAGrid:
         random = np.random.default_rng(0)
         monkeypatch.setattr(MODULE, "insertion_order", lambda xy, _: random.permutation(len(xy)))
 
-    def test_3x3(self) -> None:
-        assert not Subsets(3, 3).disagreements(range(1 << 9))
+    def test_3x3(self, record_property: Record) -> None:
+        masks = range(1 << 9)
+        assert not Subsets(3, 3).disagreements(masks)
+        record_property("cases", len(masks))
 
-    def test_4x4(self) -> None:
+    def test_4x4(self, record_property: Record) -> None:
         masks = range(1 << 16) if COMPILED else range(0, 1 << 16, 97)
         assert not Subsets(4, 4).disagreements(masks)
+        record_property("cases", len(masks))
 
     def test_brute_force_covers_the_hull(self) -> None:
         """The oracle itself: its triangles cover the hull of the subset once."""
@@ -124,11 +133,14 @@ FAULTS = {
 }
 
 
-@pytest.mark.obligation("M4", "an insertion with a seeded fault is found by the comparison with brute force")
+@pytest.mark.obligation(
+    "M4", "an insertion with a seeded fault is found by the comparison with brute force", method="mutation"
+)
 class TestFaultsAreFound:
     """The comparison above rejects an insertion with a seeded fault: run in a child process, interpreted."""
 
     def test_control_faults(self) -> None:
+        """Lines of the insertion changed, one by one; each makes the enumeration disagree, none does not."""
         child = subprocess.run(
             [sys.executable, "-c", FAULTY],
             env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
@@ -152,12 +164,19 @@ SIX: dict[str, Sequence[Point]] = {
 }
 
 
-@pytest.mark.obligation("M4", "insertion gives the same triangulation in all 720 orders of six points")
+@pytest.mark.obligation(
+    "M4",
+    "insertion gives the same triangulation in all 720 orders of six points",
+    method="enumeration",
+    control_in="TestFaultsAreFound",
+)
 class TestEveryOrder:
     """All 720 orders of insertion of six points give one and the same triangulation."""
 
     @pytest.mark.parametrize("points", SIX.values(), ids=SIX.keys())
-    def test_all_permutations(self, points: Sequence[Point], monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_all_permutations(
+        self, points: Sequence[Point], monkeypatch: pytest.MonkeyPatch, record_property: Record
+    ) -> None:
         orders = list(permutations(range(6)))[:: 1 if COMPILED else 7]
         exact = oracles.rationals(points)
         distinct = list(dict.fromkeys(exact))
@@ -169,6 +188,7 @@ class TestEveryOrder:
             assert canonical_triangles(mesh.triangles.tolist()) == expected
             assert oracles.rationals(mesh.points.tolist()) == distinct
             assert [distinct[v] for v in mesh.representative] == exact
+        record_property("cases", len(orders))
 
 
 def is_collinear(points: list[oracles.RationalPoint]) -> bool:
@@ -176,7 +196,12 @@ def is_collinear(points: list[oracles.RationalPoint]) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M4", "insertion equals brute force and is a fixed point of Lawson, for any doubles")
+@pytest.mark.obligation(
+    "M4",
+    "insertion equals brute force and is a fixed point of Lawson, for any doubles",
+    method="property-based",
+    control_in="TestFaultsAreFound",
+)
 class TestAnyPoints:
     """For any doubles, duplicates and all: the vertices are the distinct points in the order of the input, the
     triangles those of brute force, and an error says that all points lie on a line just when they do."""
@@ -249,7 +274,9 @@ def euler_holds(mesh: Triangulation) -> bool:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M4", "the triangulation of many points is the same for every seed and order, and verified")
+@pytest.mark.obligation(
+    "M4", "the triangulation of many points is the same for every seed and order, and verified", method="named cases"
+)
 class TestManyPoints:
     """The same triangulation for every seed and order of many points; the verifier, which shares no code, agrees."""
 
@@ -266,6 +293,7 @@ class TestManyPoints:
             assert delaunay(points[order], seed=seed).canonical() == canonical
 
     def test_control_a_flipped_edge_is_noticed(self) -> None:
+        """One edge flipped."""
         mesh = delaunay(STRUCTURED["uniform"])
         surface = mesh.quad_edge()
         for edge in surface.edges():
@@ -277,7 +305,7 @@ class TestManyPoints:
         assert not verify(other.points, other.triangles).ok
 
 
-@pytest.mark.obligation("M4", "degenerate input is decided in doubles")
+@pytest.mark.obligation("M4", "degenerate input is decided in doubles", method="named cases")
 class TestStages:
     """The stage that the design names decides each kind of input, so that no degenerate input ends in rationals."""
 
@@ -300,6 +328,11 @@ class TestStages:
     def test_rationals_outside_the_window(self) -> None:
         work = delaunay(SIX["no window"]).work
         assert work.incircle[Stage.RATIONAL] > 0
+
+    def test_control_other_input_needs_other_stages(self) -> None:
+        """Points of a circle in the place of points in general position."""
+        work = delaunay(STRUCTURED["circle"][:300]).work
+        assert not {stage for stage, count in work.incircle.items() if count} <= {Stage.FILTER}
 
 
 class TestProgress:

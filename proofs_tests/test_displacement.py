@@ -59,7 +59,9 @@ def rows_near_segments(draw: st.DrawFn) -> list[Row]:
     return rows
 
 
-@pytest.mark.obligation("R1", "the displacement of segments that is reported is the exact maximum")
+@pytest.mark.obligation(
+    "R1", "the displacement of segments that is reported is the exact maximum", method="property-based"
+)
 class TestDisplacement:
     """Law: the answer is the maximum of the exact distances, and the first point that attains it."""
 
@@ -100,6 +102,13 @@ class TestDisplacement:
         rows = [(1.0, 1.0 + 2.0**-40 + i * 2.0**-90, 0.0, 0.0, 2.0, 0.0) for i in range(3)]
         rows += [(1e-20 * i, 2.0, 0.0, 0.0, 0.5 + i, 2.0**-60 * i) for i in range(9)]
         assert answer(rows) == expected(rows)
+
+    def test_control_in_doubles(self) -> None:
+        """Distances compared in doubles: another point is the farthest."""
+        rows = [(3.0, 2.0**-k, 0.0, 0.0, 2.0, 0.0) for k in (30, 29, 31)]
+        distances = [float(distance_squared(row)) for row in rows]
+        assert answer(rows)[1] == expected(rows)[1] == 1
+        assert distances.index(max(distances)) != 1
 
 
 class TestControls:

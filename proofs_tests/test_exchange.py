@@ -43,7 +43,7 @@ rings_of_positions = st.lists(positions, min_size=3, max_size=7, unique=True)
 many_rings = st.lists(rings_of_positions, max_size=4)
 
 
-@pytest.mark.obligation("P3", "rings, GeoJSON and shapely come back from a PSLG bit for bit")
+@pytest.mark.obligation("P3", "rings, GeoJSON and shapely come back from a PSLG bit for bit", method="property-based")
 class TestRoundTrip:
     """Rings are the rings of their PSLG, and a PSLG of rings is that of its GeoJSON and of its shapely rings."""
 
@@ -74,6 +74,7 @@ class TestRoundTrip:
         assert bits(pslg.points) == bits(PSLG.from_rings(rings).points)
 
     def test_control_lost_digits_are_caught(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Coordinates rounded to fifteen places."""
         pslg = PSLG.from_rings([[(0.1 + 0.2, 0.0), (1 / 3, 1.0), (0.0, 1.0)]])
         assert PSLG.from_geojson(pslg.to_geojson()) == pslg
         monkeypatch.setattr(geojson_module, "_closed", lambda ring: np.round([*ring, ring[0]], 15).tolist())

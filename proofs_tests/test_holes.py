@@ -36,7 +36,9 @@ def again(mesh: Triangulation) -> Triangulation:
     return constrained_delaunay(PSLG(mesh.points, mesh.segments, holes=mesh.holes))
 
 
-@pytest.mark.obligation("H1", "the segments and the seeds of the holes alone carve the same domain, by seeds")
+@pytest.mark.obligation(
+    "H1", "the segments and the seeds of the holes alone carve the same domain, by seeds", method="property-based"
+)
 class TestSeeds:
     """Whatever rule carved the domain, carving by the seeds of its holes carves it again."""
 
@@ -51,6 +53,7 @@ class TestSeeds:
         assert again(mesh).canonical() == mesh.canonical()
 
     def test_control_without_seeds_the_hole_is_filled(self) -> None:
+        """The seeds left out."""
         mesh = constrained_delaunay(PSLG.from_rings([square(0, 0, 9), square(2, 2, 5)]))
         filled = again(replace(mesh, holes=np.empty((0, 2))))
         assert again(mesh).statistics().area == mesh.statistics().area == 56.0

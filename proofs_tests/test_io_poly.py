@@ -162,7 +162,7 @@ def same(one: PSLG, other: PSLG) -> bool:
     return one == other and all(a is b or a.tobytes() == b.tobytes() for a, b in values)
 
 
-@pytest.mark.obligation("P4", "a PSLG on file is the PSLG, bit for bit")
+@pytest.mark.obligation("P4", "a PSLG on file is the PSLG, bit for bit", method="property-based")
 class TestRoundTrip:
     """read_pslg(write_pslg(pslg)) = pslg."""
 
@@ -185,6 +185,7 @@ class TestRoundTrip:
         assert read_pslg(tmp_path / "g.poly") == nothing
 
     def test_control_fifteen_digits_are_caught(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Coordinates written with fifteen digits; the sign of a zero lost."""
         pslg = PSLG([(0.1 + 0.2, 0.0), (1 / 3, 1.0)], [(0, 1)])
         monkeypatch.setattr(text_module, "_FLOAT", "%.15g")
         write_pslg(tmp_path / "g.poly", pslg)

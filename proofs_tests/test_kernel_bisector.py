@@ -59,7 +59,9 @@ ORACLES: dict[str, Callable[..., int]] = {
 ARITY = {"nearer": 3, "along": 4, "crossing order": 5}
 
 
-@pytest.mark.obligation("K7", "the predicates about bisectors equal the sign in fractions for all finite doubles")
+@pytest.mark.obligation(
+    "K7", "the predicates about bisectors equal the sign in fractions for all finite doubles", method="property-based"
+)
 class TestBisectors:
     """Each sign is that of the fractions, within the window and guarded."""
 
@@ -100,6 +102,7 @@ class TestBisectors:
         assert lies > 20
 
     def test_control_without_its_bound_the_filter_lies(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The bound of the filter set to zero."""
         random = np.random.default_rng(0)
         function = getattr(nearer_adaptive, "py_func", nearer_adaptive)
         monkeypatch.setattr(bisector, "_NEARER_BOUND", 0.0)

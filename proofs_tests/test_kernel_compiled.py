@@ -57,7 +57,9 @@ def digests() -> str:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "compiled equals interpreted, bit for bit, in this process and in a later one")
+@pytest.mark.obligation(
+    "J1", "compiled equals interpreted, bit for bit, in this process and in a later one", method="bit for bit"
+)
 class TestLanes:
     """Every routine returns the same bits compiled, loaded from the cache in a new process, and interpreted."""
 
@@ -77,6 +79,7 @@ class TestLanes:
         assert in_a_child("-c", code) == f"{expected}1 0\n"
 
     def test_control_the_digest_sees_one_bit(self) -> None:
+        """One unit in the last place, and the sign of a zero."""
         one, other, zero = lane_digest.Digest(), lane_digest.Digest(), lane_digest.Digest()
         one.add(1.0, 0.0)
         other.add(1.0 + 2.0**-52, 0.0)
@@ -98,7 +101,7 @@ def machine_code(function: Callable[..., object], signature: object, **options: 
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of the kernel")
+@pytest.mark.obligation("J1", "there is no fused multiply-add in the machine code of the kernel", method="machine code")
 class TestMachineCode:
     """No compiled function contains a fused multiply-add, which rounds once where the source rounds twice."""
 
@@ -124,6 +127,7 @@ class TestMachineCode:
 
     @pytest.mark.skipif(not HAS_FUSED, reason="this processor has no fused multiply-add")
     def test_control_contraction_is_seen(self) -> None:
+        """Products compiled with contraction."""
         pair = (numba.types.float64, numba.types.float64)
         assert FUSED.findall(machine_code(expansions.two_product, pair, fastmath={"contract"}))
         assert FUSED.findall(machine_code(doubledouble.dd_multiply, pair * 2, fastmath={"contract"}))
@@ -150,7 +154,9 @@ class Interrupting:
         return self.predicate(*points)
 
 
-@pytest.mark.obligation("J1", "an interrupt in the rational stage never yields a wrong sign, and is not lost")
+@pytest.mark.obligation(
+    "J1", "an interrupt in the rational stage never yields a wrong sign, and is not lost", method="named cases"
+)
 class TestInterrupts:
     """Whatever is raised in a callback: the signs are right, the exception arrives after the run, and nothing hangs."""
 

@@ -33,7 +33,7 @@ def squared_distance(p: ExactPoint, q: ExactPoint) -> Fraction:
     return (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2
 
 
-@pytest.mark.obligation("K7", "circumcentre and crossing are exact")
+@pytest.mark.obligation("K7", "circumcentre and crossing are exact", method="property-based")
 class TestExactConstructions:
     """The circumcentre has the same exact distance from all corners; the crossing lies on both segments."""
 
@@ -73,6 +73,7 @@ class TestExactConstructions:
         return between and oracle.orient2d(p, q, crossing) == 0
 
     def test_control_rounded_points_are_refused(self) -> None:
+        """The circumcentre and the crossing rounded to doubles."""
         corners = ((0.0, 0.0), (1.0, 0.0), (0.3, 0.7))
         centre = rounded(circumcentre(*corners))
         assert not self.is_equidistant((Fraction(centre.x), Fraction(centre.y)), corners)
@@ -96,7 +97,9 @@ class TestExactConstructions:
             point_on_segment((0, 0), (1, 1), math.nan)
 
 
-@pytest.mark.obligation("K7", "a rounded construction is the nearest double, and states its error")
+@pytest.mark.obligation(
+    "K7", "a rounded construction is the nearest double, and states its error", method="property-based"
+)
 class TestRounding:
     """Each coordinate is the nearest double, ties to even; the error is exact, at most half an ulp."""
 
@@ -125,6 +128,7 @@ class TestRounding:
             assert self.is_nearest(rounded((mpq(exact.numerator, exact.denominator), mpq(0))).x, exact)
 
     def test_control_a_neighbour_is_refused(self) -> None:
+        """The double beside the nearest one, and a tie to odd."""
         assert self.is_nearest(1.0, Fraction(1))
         assert not self.is_nearest(math.nextafter(1.0, 2.0), Fraction(1))
         assert not self.is_nearest(1.0 + 2.0**-52, 1 + Fraction(2) ** -53)

@@ -32,7 +32,7 @@ def largest_needed(last: Bounded) -> Fraction:
     return last.e * (1 + U) ** 2 / (1 - U)
 
 
-@pytest.mark.obligation("K1", "the filter constants are sound for u = 2^-53, by exact calculus")
+@pytest.mark.obligation("K1", "the filter constants are sound for u = 2^-53, by exact calculus", method="calculus")
 class TestConstants:
     """The bound that the calculus of rounding errors asks for is at most the constant of the filter."""
 
@@ -49,6 +49,7 @@ class TestConstants:
         assert largest_needed(self.term + self.term) <= Fraction(INCIRCLE_BOUND)
 
     def test_control_smaller_constants_are_refused(self) -> None:
+        """(3 + 11u)u for orient2d and (10 + 74u)u for incircle."""
         assert largest_needed(self.product) > (3 + 11 * U) * U
         assert largest_needed(self.term + self.term) > (10 + 74 * U) * U
 
@@ -91,7 +92,12 @@ def published(precision: int) -> float:
 BINADES = 4
 
 
-@pytest.mark.obligation("K3", "the filters of orient2d and diametral never lie (exhaustive, 3 bits)")
+@pytest.mark.obligation(
+    "K3",
+    "the filters of orient2d and diametral never lie (exhaustive, 3 bits)",
+    method="exhaustive",
+    control_in="TestFilterControls",
+)
 class TestFilterNeverLies:
     """A sign that the filter certifies is the exact one: over every input of the format, up to symmetries.
 
@@ -103,18 +109,21 @@ class TestFilterNeverLies:
         assert lies(name, MiniFloat(3), published(3), BINADES) == 0
 
 
-@pytest.mark.obligation("K4", "an unsound constant and a missing guard are found by K3")
+@pytest.mark.obligation("K4", "an unsound constant and a missing guard are found by K3", method="exhaustive")
 class TestFilterControls:
     """The same search finds lies where there are some."""
 
     @pytest.mark.parametrize("name", ["orient2d_filter", "diametral_filter"])
     @pytest.mark.parametrize("factor", [0.0, 0.5, 1.0])
     def test_control_an_unsound_constant_is_found(self, name: str, factor: float) -> None:
+        """The constants 0, u/2 and u."""
         assert lies(name, MiniFloat(3), factor * 2.0**-3, BINADES) > 0
 
     def test_control_a_missing_guard_is_found(self) -> None:
+        """No guard where products underflow."""
         assert lies("orient2d_filter", MiniFloat(3, quantum=2.0**6), published(3), BINADES) > 0
 
     def test_control_a_wrong_filter_is_found(self) -> None:
+        """A comparison with >= in the place of >."""
         mini = MiniFloat(3, edits={"orient2d_filter": ("-det > error", "-det >= error")})
         assert lies("orient2d_filter", mini, published(3), 2) > 0

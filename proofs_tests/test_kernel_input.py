@@ -27,7 +27,9 @@ SCALARS: list[tuple[Callable[..., object], int]] = [
 EXTENDED = np.finfo(np.longdouble).nmant > 52
 
 
-@pytest.mark.obligation("K7", "coordinates of every exact number type, mixed, give the exact sign")
+@pytest.mark.obligation(
+    "K7", "coordinates of every exact number type, mixed, give the exact sign", method="property-based"
+)
 class TestNumberTypes:
     """int, float, numpy scalar, Fraction, mpz, mpq of one value give one answer, and no value is rounded."""
 
@@ -75,12 +77,13 @@ class TestNumberTypes:
         assert ek.orient2d(*points.astype(np.float32)) == 1
 
     def test_control_rounding_to_doubles_gives_another_sign(self) -> None:
+        """A coordinate of 54 bits rounded to a double."""
         a, b, c = (0, 0), (2**53, 2**53), (2**53 + 1, 2**53)
         assert ek.orient2d(a, b, c) == -1
         assert ek.orient2d(a, b, (float(c[0]), float(c[1]))) == 0
 
 
-@pytest.mark.obligation("K7", "NaN, infinity and what is no number raise a typed error")
+@pytest.mark.obligation("K7", "NaN, infinity and what is no number raise a typed error", method="named cases")
 class TestBadPoints:
     """Every function refuses every bad coordinate, in every position, with an ExactMeshError that shows it."""
 
@@ -121,11 +124,19 @@ class TestBadPoints:
             assert issubclass(error, ek.ExactMeshError)
             assert issubclass(error, ValueError)
 
+    @pytest.mark.parametrize(("function", "n"), SCALARS)
+    def test_control_good_points(self, function: Callable[..., object], n: int) -> None:
+        """None: the same points without the bad one are taken."""
+        good: Sequence[object] = [(0, 0), (1, 0), (0, 1), (Fraction(1, 3), -2)][:n]
+        function(*good)
+
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
-@pytest.mark.obligation("K7", "array input: any layout and dtype, nothing rounded, culprits named by index")
+@pytest.mark.obligation(
+    "K7", "array input: any layout and dtype, nothing rounded, culprits named by index", method="named cases"
+)
 class TestArrays:
     """Numbers that are doubles pass whatever holds them; any other number is refused with its index."""
 
@@ -175,6 +186,7 @@ class TestArrays:
         assert exact_doubles(x[:1]).tolist() == [[1.0, 1.0]]
 
     def test_control_numpy_rounds_in_silence(self) -> None:
+        """The conversion that numpy does by itself: 2^53 + 1 becomes 2^53."""
         assert np.asarray([(2**53 + 1, 0.5)])[0, 0] == 2.0**53
 
     def test_large_doubles_in_a_list_pass(self) -> None:
@@ -221,7 +233,9 @@ class TestArrays:
         assert finite_points(largest).tolist() == largest.tolist()
 
 
-@pytest.mark.obligation("K7", "vertex indices: any integer dtype, nothing wrapped, culprits named by index")
+@pytest.mark.obligation(
+    "K7", "vertex indices: any integer dtype, nothing wrapped, culprits named by index", method="named cases"
+)
 class TestVertexIndices:
     """Integers that fit 31 bits pass whatever holds them; any other is refused with its row."""
 
@@ -250,6 +264,7 @@ class TestVertexIndices:
             vertex_indices(bad)
 
     def test_control_a_cast_wraps_in_silence(self) -> None:
+        """The cast that numpy does by itself: 2^32 + 1 becomes 1."""
         assert np.array([2**32 + 1]).astype(np.int32)[0] == 1
 
 
@@ -260,7 +275,9 @@ BATCHES: list[tuple[Callable[..., npt.NDArray[np.int8]], Callable[..., int], int
 ]
 
 
-@pytest.mark.obligation("K7", "batch predicates equal the scalar ones, element by element, over any broadcast")
+@pytest.mark.obligation(
+    "K7", "batch predicates equal the scalar ones, element by element, over any broadcast", method="differential"
+)
 class TestBatch:
     """int8 signs, one for each row; a single point stands for as many as the others are."""
 
@@ -295,6 +312,14 @@ class TestBatch:
         expected = [oracle.orient2d((0, 0), (1, 1), p) for p in line.tolist()]
         assert ek.orient2d_batch((0, 0), (1, 1), line).tolist() == expected
         assert len(set(expected)) == 3
+
+    @pytest.mark.parametrize(("batch", "exact", "n"), BATCHES)
+    def test_control_a_row_late(
+        self, batch: Callable[..., npt.NDArray[np.int8]], exact: Callable[..., int], n: int
+    ) -> None:
+        """Signs that are those of the row before."""
+        with pytest.raises(AssertionError):
+            self.test_broadcasting(lambda *points: np.roll(batch(*points), 1), exact, n)
 
 
 class TestBatchWindow:

@@ -5,6 +5,7 @@ import tempfile
 import time
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
@@ -12,7 +13,9 @@ from exactkernel import jit, rational
 
 
 @pytest.mark.obligation(
-    "J1", "stale or foreign machine code is never loaded; a folder that cannot be written is no error"
+    "J1",
+    "stale or foreign machine code is never loaded; a folder that cannot be written is no error",
+    method="named cases",
 )
 class TestCacheFolder:
     """The folder's name depends on every source; it is the user's own; where none can be written, a new one is made."""
@@ -86,12 +89,21 @@ class TestCacheFolder:
         monkeypatch.setattr(jit, "_CACHE", None)
         assert jit.is_cache_warm()
 
+    def test_control_other_sources_other_folder(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+        """A source that is not among those of the stamp: the folder stays the same, and the code would be stale."""
+        for name in ("a.py", "b.py"):
+            (tmp_path / name).write_text("x = 1\n")
+        monkeypatch.setattr(jit, "_sources", lambda: [tmp_path / "a.py"])
+        before = jit._stamp()
+        (tmp_path / "b.py").write_text("x = 11\n")
+        assert jit._stamp() == before
+
 
 def _increment(x: float) -> float:
     return x + 1.0
 
 
-@pytest.mark.obligation("J1", "jit and the callbacks work the same in both lanes")
+@pytest.mark.obligation("J1", "jit and the callbacks work the same in both lanes", method="named cases")
 class TestBothLanes:
     """What jit returns computes what its source computes, whether it compiles or not."""
 
@@ -111,3 +123,14 @@ class TestBothLanes:
             ask = rational._keep_alive.pop()  # type: ignore[assignment]  # a ctypes function
         ask(mailbox.ctypes.data, 3, 0, *[0.0] * 6)
         assert mailbox.tolist() == [0, 3 * 4 + 3]
+
+    @pytest.mark.compiled
+    def test_control_fast_mathematics_is_another_function(self) -> None:
+        """A function compiled with other options than those of jit."""
+
+        def zero(a: float, b: float) -> float:
+            return ((a + b) - a) - b
+
+        loose = numba.njit(fastmath=True)(zero)
+        assert zero(1.0, 2.0**-60) != 0.0
+        assert loose(1.0, 2.0**-60) == 0.0

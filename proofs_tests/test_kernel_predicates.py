@@ -38,7 +38,9 @@ def in_contexts(adaptive: Callable[..., int], points: tuple[Point, ...]) -> set[
 
 
 @pytest.mark.obligation(
-    "K7", "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles"
+    "K7",
+    "orient2d, incircle, diametral, incircle_perturbed have the exact sign for all finite doubles",
+    method="property-based",
 )
 class TestExactSigns:
     """Scalar, batch, and in a loop with any context: the sign is that of the determinant in fractions."""
@@ -72,16 +74,19 @@ class TestExactSigns:
         assert in_contexts(incircle_perturbed_adaptive, points) == {exact}
 
     def test_control_the_published_filter_lies(self) -> None:
+        """The published filter, without a guard against underflow."""
         assert oracle.orient2d(*PUBLISHED_LIE) == -1
         assert orient2d_filter(ORIENT2D_BOUND, *np.ravel(PUBLISHED_LIE).tolist()) == 1
 
     def test_control_an_unguarded_expansion_lies(self) -> None:
+        """Expansions used outside of their window."""
         unguarded = guarded_context()._replace(orient2d_bound=np.finfo(float).max)
         tiny = ((5e-324, 0.0), (0.0, 5e-324), (0.0, 0.0))
         assert orient2d_adaptive(unguarded, *np.ravel(tiny).tolist()) == 0
         assert ek.orient2d(*tiny) == oracle.orient2d(*tiny) == 1
 
     def test_control_rounded_determinants_miss_what_the_stages_find(self) -> None:
+        """The determinant in plain doubles."""
         p = ((1.0 + 2.0**-52, 1.0), (1.0, 1.0 - 2.0**-52), (0.0, 0.0))
         (ax, ay), (bx, by), _ = p
         assert ax * by - ay * bx == 0.0
@@ -111,7 +116,9 @@ STAGED: list[Case] = [
 ]
 
 
-@pytest.mark.obligation("K7", "the stage that decides is pinned, for each stage of each predicate")
+@pytest.mark.obligation(
+    "K7", "the stage that decides is pinned, for each stage of each predicate", method="named cases"
+)
 class TestStages:
     """Each stage decides the inputs that it is there for, and the one before it did not; the sign is exact."""
 
@@ -160,6 +167,7 @@ class TestStages:
         assert context.counts.sum(axis=0)[stage] == context.counts.sum() == 1
 
     def test_control_the_filter_leaves_what_later_stages_decide(self) -> None:
+        """The filter alone: it leaves open what it is not pinned for."""
         filters: dict[Callable[..., object], tuple[Callable[..., int], float]] = {
             ek.orient2d_staged: (orient2d_filter, ORIENT2D_BOUND),
             ek.diametral_staged: (diametral_filter, ORIENT2D_BOUND),

@@ -61,7 +61,7 @@ def contexts(points: Triangle) -> list[Context]:
     return [guarded_context(), make_context(np.array(points))]
 
 
-@pytest.mark.obligation("K1", "the constants of the bounds on shapes are sound, by exact calculus")
+@pytest.mark.obligation("K1", "the constants of the bounds on shapes are sound, by exact calculus", method="calculus")
 class TestShapeConstants:
     """The bound that the calculus of rounding errors asks for leaves at least 5u of the one that is used."""
 
@@ -81,10 +81,13 @@ class TestShapeConstants:
             assert largest_needed(worst) + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
 
     def test_control_half_of_it_is_too_little_for_angles(self) -> None:
+        """Half the constant."""
         assert largest_needed(self.cross * self.trigonometric) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
 
 
-@pytest.mark.obligation("K7", "cosine and sine of a bound are enclosed, and the directions are exact")
+@pytest.mark.obligation(
+    "K7", "cosine and sine of a bound are enclosed, and the directions are exact", method="property-based"
+)
 class TestTrigonometry:
     """The enclosures meet those of Machin and Taylor; pairs of doubles lie within 2^-105 of them."""
 
@@ -118,11 +121,14 @@ class TestTrigonometry:
             assert sine == round(math.sin(angle) * scale)
 
     def test_control_a_rounded_pi_is_noticed(self) -> None:
+        """The cosine of the mathematics library, of degrees by a rounded pi."""
         low, high = shape_oracle.cosine_interval(Fraction(20), 128)
         assert not low <= Fraction(math.cos(math.radians(20.0))) <= high
 
 
-@pytest.mark.obligation("K7", "angles against a bound: exact for all finite doubles and every bound")
+@pytest.mark.obligation(
+    "K7", "angles against a bound: exact for all finite doubles and every bound", method="property-based"
+)
 class TestAngles:
     """Scalar, and in a loop with any context: below and above are those of the law of cosines in fractions."""
 
@@ -174,6 +180,7 @@ class TestAngles:
             assert ek.angle_above(order, 2 * degrees) == shape_oracle.angle_above(points, 2 * degrees)
 
     def test_control_a_filter_without_a_bound_lies(self) -> None:
+        """The bound of the filter set to zero."""
         rng = np.random.default_rng(4)
         lies = 0
         for _ in range(2000):
@@ -186,6 +193,7 @@ class TestAngles:
         assert lies > 0
 
     def test_control_the_bound_rounded_to_radians_is_wrong(self) -> None:
+        """Sine and cosine of 45 degrees in doubles, which differ."""
         below, above = math.sin(math.radians(45.0)), math.cos(math.radians(45.0))  # both near the square root of 1/2
         rounded = AngleBound(45.0, below, 0.0, above, 0.0, True)
         assert below < above
@@ -193,7 +201,9 @@ class TestAngles:
         assert not ek.angle_below(RIGHT, 45)
 
 
-@pytest.mark.obligation("K7", "areas and lengths against a bound: exact for all finite doubles")
+@pytest.mark.obligation(
+    "K7", "areas and lengths against a bound: exact for all finite doubles", method="property-based"
+)
 class TestMeasures:
     """Scalar, and in a loop with any context: areas and lengths are compared as in fractions, ties included."""
 
@@ -248,6 +258,7 @@ class TestMeasures:
         assert ek.length_above(huge[:2], 1.7e308)
 
     def test_control_filters_without_a_bound_lie(self) -> None:
+        """The bounds of the filters set to zero."""
         rng = np.random.default_rng(4)
         areas = lengths = 0
         for ux, uy, vx, vy in rng.random((2000, 4)).tolist():
@@ -266,7 +277,7 @@ def doubled_area(points: Triangle) -> Fraction:
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@pytest.mark.obligation("K7", "the stage that decides a bound on shapes is pinned")
+@pytest.mark.obligation("K7", "the stage that decides a bound on shapes is pinned", method="named cases")
 class TestShapeStages:
     """Each stage decides what it is there for: the rational stage only what lies outside the window."""
 
@@ -303,8 +314,15 @@ class TestShapeStages:
             assert not angle_below_adaptive(k, angle_bound(20.0), *np.ravel(far).tolist())
             assert k.counts[0].tolist() == [0, 0, 0, 0, 1]
 
+    def test_control_a_closed_stage_decides_nothing(self) -> None:
+        """The grid stage closed: the tally is another one."""
+        k = make_context(np.array(RIGHT))._replace(grid_limit=0.0)
+        angle_below_adaptive(k, angle_bound(45.0), *np.ravel(RIGHT).tolist())
+        assert k.counts[0][ek.Stage.GRID] == 0
+        assert k.counts[0].sum() == 1
 
-@pytest.mark.obligation("K7", "bad bounds and shapes raise a typed error")
+
+@pytest.mark.obligation("K7", "bad bounds and shapes raise a typed error", method="named cases")
 class TestBadBounds:
     """NaN, infinite, negative, no number: a typed error; a flat triangle has no angles."""
 
@@ -342,3 +360,10 @@ class TestBadBounds:
             ek.area_above(RIGHT, "1")  # type: ignore[arg-type]  # what an untyped caller passes
         assert not ek.area_above([(0, 0), (1, 1), (2, 2)], 0)
         assert ek.area_above(np.array(RIGHT), np.float64(0.25))
+
+    def test_control_good_bounds(self) -> None:
+        """None: bounds at the ends of their ranges are taken."""
+        assert not ek.angle_below(RIGHT, 0)
+        assert not ek.angle_above(RIGHT, 180)
+        assert ek.area_above(RIGHT, 0)
+        assert not ek.length_above(RIGHT[:2], math.inf)

@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 from proofs_tests.kernel_oracle import parity
+from proofs_tests.recording import Record
 
 from exactkernel import incircle, incircle_perturbed, orient2d
 
@@ -30,14 +31,17 @@ def ignoring_the_order(a: Cell, b: Cell, c: Cell, d: Cell) -> int:
     return int(incircle(a, b, c, d)) or 1
 
 
-@pytest.mark.obligation("K9", "perturbed incircle is never zero and antisymmetric (exhaustive on the 4 x 4 grid)")
+@pytest.mark.obligation(
+    "K9", "perturbed incircle is never zero and antisymmetric (exhaustive on the 4 x 4 grid)", method="enumeration"
+)
 class TestPerturbedSign:
     """For four distinct points that are not all on a line the sign is not 0, changes with the parity of the order, and
     is that of incircle wherever that decides."""
 
-    def test_all_fours_of_a_grid(self) -> None:
+    def test_all_fours_of_a_grid(self, record_property: Record) -> None:
         ties = 0
-        for points in combinations(GRID_4, 4):
+        fours = list(combinations(GRID_4, 4))
+        for points in fours:
             if all(orient2d(points[0], points[1], p) == 0 for p in points[2:]):
                 assert incircle_perturbed(*points) == 0
                 continue
@@ -47,8 +51,10 @@ class TestPerturbedSign:
             if sign == 0 or points[0] == (0, 0):
                 assert is_antisymmetric(incircle_perturbed, points)
         assert ties > 150
+        record_property("cases", len(fours))
 
     def test_control_other_predicates_are_refused(self) -> None:
+        """The plain incircle, and a perturbation that ignores the order of the points."""
         square = ((0, 0), (1, 0), (1, 1), (0, 1))
         assert not is_antisymmetric(incircle, square)
         assert not is_antisymmetric(ignoring_the_order, square)
@@ -110,17 +116,21 @@ def random_subsets(count: int) -> list[list[Cell]]:
     return [s for s in subsets if any(orient2d(s[0], s[1], p) != 0 for p in s)]
 
 
-@pytest.mark.obligation("K9", "the triangles with empty perturbed circles are one triangulation of the hull")
+@pytest.mark.obligation(
+    "K9", "the triangles with empty perturbed circles are one triangulation of the hull", method="enumeration"
+)
 class TestUniqueTriangulation:
     """The triangles whose perturbed circle is empty cover the convex hull exactly once and use every point."""
 
-    def test_grids(self) -> None:
+    def test_grids(self, record_property: Record) -> None:
         assert covers_the_hull_once(GRID_3, incircle_perturbed)
         assert covers_the_hull_once(GRID_4, incircle_perturbed)
+        record_property("cases", 2)
 
-    def test_random_subsets(self) -> None:
+    def test_random_subsets(self, record_property: Record) -> None:
         for subset in random_subsets(120):
             assert covers_the_hull_once(subset, incircle_perturbed)
+        record_property("cases", 120)
 
     def test_the_order_of_the_points_does_not_matter(self) -> None:
         def as_set(points: Sequence[Cell]) -> set[frozenset[Cell]]:
@@ -131,9 +141,12 @@ class TestUniqueTriangulation:
 
     @pytest.mark.parametrize("predicate", [incircle, ignoring_the_order])
     def test_control_unbroken_ties_leave_holes_or_overlaps(self, predicate: Predicate) -> None:
+        """The plain incircle, and a perturbation that ignores the order of the points."""
         assert not covers_the_hull_once(GRID_3, predicate)
 
     def test_control_ties_broken_the_other_way_overlap(self) -> None:
+        """Every tie broken to the outside."""
+
         def always_outside(a: Cell, b: Cell, c: Cell, d: Cell) -> int:
             return int(incircle(a, b, c, d)) or -1
 

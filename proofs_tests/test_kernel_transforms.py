@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from proofs_tests.minifloat import Arithmetic, Backend, Floats, MiniFloat, all_numbers, derive, round_array
+from proofs_tests.recording import Record
 
 from exactkernel.expansions import fast_two_sum, split, two_diff, two_product, two_sum
 
@@ -31,29 +32,35 @@ def is_error_free(function: Arithmetic, exact: Floats, a: Floats, b: Floats, pre
     )
 
 
-@pytest.mark.obligation("K5", "two_sum, fast_two_sum, two_diff are error-free for every pair (exhaustive, 3 to 8 bits)")
+@pytest.mark.obligation(
+    "K5", "two_sum, fast_two_sum, two_diff are error-free for every pair (exhaustive, 3 to 8 bits)", method="exhaustive"
+)
 class TestSums:
     """x = fl(a + b) and x + y = a + b exactly, for every pair of floats; fast_two_sum where |a| >= |b| or a = 0."""
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_two_sum(self, precision: int) -> None:
+    def test_two_sum(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         assert is_error_free(derived("two_sum", MiniFloat(precision)), a + b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_two_diff(self, precision: int) -> None:
+    def test_two_diff(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         assert is_error_free(derived("two_diff", MiniFloat(precision)), a - b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
-    def test_fast_two_sum_under_its_condition(self, precision: int) -> None:
+    def test_fast_two_sum_under_its_condition(self, precision: int, record_property: Record) -> None:
         a, b = every_pair(precision)
         allowed = (abs(a) >= abs(b)) | (a == 0.0)
         a, b = a[allowed], b[allowed]
         assert is_error_free(derived("fast_two_sum", MiniFloat(precision)), a + b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("precision", PRECISIONS)
     def test_control_fast_two_sum_without_its_condition_fails(self, precision: int) -> None:
+        """fast_two_sum on pairs whose first is the smaller."""
         a, b = every_pair(precision)
         assert not is_error_free(derived("fast_two_sum", MiniFloat(precision)), a + b, a, b, precision)
 
@@ -67,12 +74,15 @@ class TestSums:
         ],
     )
     def test_control_wrong_formulas_fail(self, name: str, edit: tuple[str, str]) -> None:
+        """Terms of the formulas dropped or exchanged, one by one."""
         a, b = every_pair(5)
         exact = a + b if name == "two_sum" else a - b
         assert not is_error_free(derived(name, MiniFloat(5, edits={name: edit})), exact, a, b, 5)
 
 
-@pytest.mark.obligation("K5", "split and two_product are error-free for every pair (exhaustive, 3 to 10 bits)")
+@pytest.mark.obligation(
+    "K5", "split and two_product are error-free for every pair (exhaustive, 3 to 10 bits)", method="exhaustive"
+)
 class TestProduct:
     """split gives two halves that multiply without rounding; two_product: x = fl(a b), x + y = a b exactly."""
 
@@ -93,16 +103,19 @@ class TestProduct:
         )
 
     @pytest.mark.parametrize("precision", [4, 5, 6, 7, 8, 9, 10])
-    def test_split(self, precision: int) -> None:
+    def test_split(self, precision: int, record_property: Record) -> None:
         assert self.halves_are_short(MiniFloat(precision), all_numbers(precision, range(1)))
+        record_property("cases", 2 ** (precision - 1))
 
     @pytest.mark.parametrize("precision", [4, 5, 6, 7, 8, 9, 10])
-    def test_two_product(self, precision: int) -> None:
+    def test_two_product(self, precision: int, record_property: Record) -> None:
         a, b = self.pairs(precision)
         assert is_error_free(derived("two_product", MiniFloat(precision)), a * b, a, b, precision)
+        record_property("cases", len(a))
 
     @pytest.mark.parametrize("splitter", [5.0, 9.0, 33.0, 65.0])
     def test_control_a_wrong_splitter_fails(self, splitter: float) -> None:
+        """Splitters that are too small or too large."""
         mini = MiniFloat(7, constants={"SPLITTER": splitter})
         a, b = self.pairs(7)
         assert not is_error_free(derived("two_product", mini), a * b, a, b, 7)
@@ -110,12 +123,15 @@ class TestProduct:
 
     @pytest.mark.parametrize("edit", [(" - a_high * b_low", ""), ("a_low * b_low - error", "-error")])
     def test_control_a_dropped_partial_product_fails(self, edit: tuple[str, str]) -> None:
+        """A partial product dropped."""
         a, b = self.pairs(7)
         mini = MiniFloat(7, edits={"two_product": edit})
         assert not is_error_free(derived("two_product", mini), a * b, a, b, 7)
 
 
-@pytest.mark.obligation("K5", "the tool itself: a derived function rounds, and rounds half to even")
+@pytest.mark.obligation(
+    "K5", "the tool itself: a derived function rounds, and rounds half to even", method="exhaustive"
+)
 class TestMiniFloat:
     """Both roundings of the tool agree with each other and with the definition, for all sums of tiny floats."""
 
@@ -144,6 +160,7 @@ class TestMiniFloat:
         assert round_array(x, 2, quantum=1.0).tolist() == [1.0, 1.0, 2.0, 4.0, 4.0]
         assert round_array(np.array([0.5, 0.25]), 2, quantum=1.0).tolist() == [0.0, 0.0]
 
-    def test_a_stale_edit_is_noticed(self) -> None:
+    def test_control_a_stale_edit_is_noticed(self) -> None:
+        """An edit of text that the source does not have."""
         with pytest.raises(LookupError):
             derived("two_sum", MiniFloat(3, edits={"two_sum": ("no such text", "")}))

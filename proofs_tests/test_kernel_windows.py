@@ -31,7 +31,12 @@ def largest_unit(values: list[float]) -> Fraction | None:
     return Fraction(integer & -integer, common)
 
 
-@pytest.mark.obligation("K6", "a coordinate inside the window is decided in doubles, one step outside in rationals")
+@pytest.mark.obligation(
+    "K6",
+    "a coordinate inside the window is decided in doubles, one step outside in rationals",
+    method="named cases",
+    control_in="TestContext",
+)
 class TestScalarWindow:
     """At each end of each window: the last coordinate inside needs no rationals, the next one outside always does."""
 
@@ -76,7 +81,11 @@ class TestScalarWindow:
             assert self.stages(staged, exact, outside) == {ek.Stage.RATIONAL}
 
 
-@pytest.mark.obligation("K6", "the context finds the window of an input, and opens it exactly as far as it is exact")
+@pytest.mark.obligation(
+    "K6",
+    "the context finds the window of an input, and opens it exactly as far as it is exact",
+    method="property-based",
+)
 class TestContext:
     """The scan finds the largest magnitude and the common unit; bounds are finite exactly inside the windows."""
 
@@ -98,6 +107,7 @@ class TestContext:
         assert unit == math.inf if expected is None else Fraction(unit) == expected
 
     def test_control_a_unit_that_is_too_large_is_noticed(self) -> None:
+        """The common unit of fewer numbers, which is too large."""
         assert largest_unit([1.0, 2.0**80]) == 1
         assert largest_unit([2.0**80]) == 2**80
         with pytest.raises(AssertionError):
@@ -144,7 +154,7 @@ class TestContext:
         assert oracle.orient2d((unit, 0.0), (0.0, unit), (0.0, 0.0)) == 1
 
 
-@pytest.mark.obligation("K6", "scaling into the window is exact and changes no sign")
+@pytest.mark.obligation("K6", "scaling into the window is exact and changes no sign", method="property-based")
 class TestScaling:
     """The result is the input times one power of two, inside the window if any power of two leads there."""
 
@@ -152,15 +162,19 @@ class TestScaling:
     def test_scaling(self, points: tuple[Point, ...]) -> None:
         coordinates = np.array(points)
         scaled, context = scaled_into_window(coordinates)
-        pairs = [(Fraction(x), Fraction(y)) for x, y in zip(coordinates.flat, scaled.flat, strict=True)]
-        factors = {y / x for x, y in pairs if x != 0}
-        assert len(factors) <= 1
-        for factor in factors:
-            assert factor.numerator & (factor.numerator - 1) == 0
-            assert factor.denominator & (factor.denominator - 1) == 0
-        assert all(y == 0 for x, y in pairs if x == 0)
+        assert self.is_power_of_two_times(coordinates, scaled)
         reachable = self.some_power_leads_inside(coordinates)
         assert math.isfinite(context.incircle_bound) == reachable
+
+    @staticmethod
+    def is_power_of_two_times(
+        coordinates: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+        scaled: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    ) -> bool:
+        pairs = [(Fraction(x), Fraction(y)) for x, y in zip(coordinates.flat, scaled.flat, strict=True)]
+        factors = {y / x for x, y in pairs if x != 0}
+        powers = (n for factor in factors for n in (factor.numerator, factor.denominator))
+        return len(factors) <= 1 and all(n & (n - 1) == 0 for n in powers) and all(y == 0 for x, y in pairs if x == 0)
 
     @staticmethod
     def some_power_leads_inside(coordinates: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool:
@@ -186,8 +200,20 @@ class TestScaling:
         tame = np.array([[0.25, 3.0]])
         assert scaled_into_window(tame)[0] is tame
 
+    def test_control_other_factors(self) -> None:
+        """A factor of three, and one number scaled unlike the others."""
+        coordinates = np.array([[1.0, 0.0], [3.0, 5.0]])
+        assert self.is_power_of_two_times(coordinates, coordinates / 4.0)
+        assert not self.is_power_of_two_times(coordinates, coordinates * 3.0)
+        assert not self.is_power_of_two_times(coordinates, coordinates * np.array([[4.0], [2.0]]))
+        assert not self.is_power_of_two_times(coordinates, coordinates + np.array([[0.0, 1.0], [0.0, 0.0]]))
 
-@pytest.mark.obligation("K6", "differences of 4096 grid units are decided exactly by the grid stage, 4097 by another")
+
+@pytest.mark.obligation(
+    "K6",
+    "differences of 4096 grid units are decided exactly by the grid stage, 4097 by another",
+    method="property-based",
+)
 class TestGridStage:
     """At the limit of the grid stage the double determinant is exact, zero included."""
 
@@ -221,6 +247,7 @@ class TestGridStage:
             assert set(stages.tolist()) <= {int(ek.Stage.FILTER), int(ek.Stage.GRID)}
 
     def test_control_numbers_without_a_grid(self) -> None:
+        """A difference of 4097 units, and a number off the grid."""
         assert on_common_grid(1.0, 2.0, 4095.0, -7.0, 0.0, 0.5 * 2)
         assert not on_common_grid(1.0, 2.0, 4097.0, -7.0, 0.0, 1.0)
         assert not on_common_grid(1.0, 2.0**-13, 0.0, 0.0, 0.0, 1.0)
@@ -234,6 +261,7 @@ class TestGridStage:
         assert stage in (ek.Stage.FILTER, ek.Stage.GRID)
 
     def test_control_doubles_are_not_exact_on_a_larger_grid(self) -> None:
+        """A limit of 2^30 units in the place of 4096."""
         n = 2.0**27
         coordinates = [(n + 1.0, n), (n, n - 1.0), (0.0, 0.0)]
         too_wide = make_context(np.array(coordinates))._replace(grid_limit=2.0**30)

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from proofs_tests import kernel_oracle, mesh_oracle, oracles
+from proofs_tests import enumeration, kernel_oracle, mesh_oracle, oracles
 from proofs_tests.enumeration import COUNTS, Triangulation, canonical_triangles, grid, triangulations
 from proofs_tests.mesh_strategies import small_grid_sets
 from proofs_tests.oracles import RationalPoint
+from proofs_tests.recording import Record
 
 from exactkernel import incircle
 from exactkernel.jit import COMPILED
@@ -81,13 +82,13 @@ def plain_test(points: Points, edge: Edge[Primal]) -> bool:
     return incircle(a, b, c, d) <= 0
 
 
-@pytest.mark.obligation("M2", "each flip lowers 6 Phi by exactly incircle, a tie only its slopes")
+@pytest.mark.obligation("M2", "each flip lowers 6 Phi by exactly incircle, a tie only its slopes", method="enumeration")
 class TestOneFlip:
     """A flip of ac to bd changes 6 Phi by exactly -incircle(a, b, c, d), whichever edge is flipped, Delaunay or not;
     a tie changes nothing but the slopes of 6 Phi in the lifts."""
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "cocircular octagon", "convex hexagon"])
-    def test_potential(self, name: str) -> None:
+    def test_potential(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         exact = oracles.rationals(points)
         flips = 0
@@ -109,6 +110,7 @@ class TestOneFlip:
                 assert (slopes[1] < slopes[0]) is (kernel_oracle.incircle_perturbed(a, b, c, d) > 0) or before != after
                 flips += 1
         assert flips > 10
+        record_property("cases", flips)
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex hexagon"])
     def test_flippable_is_strictly_convex(self, name: str) -> None:
@@ -153,16 +155,19 @@ def descends(points: Sequence[RationalPoint], met: Sequence[Triangulation]) -> b
     return all(after < before for before, after in pairwise(heights))
 
 
-@pytest.mark.obligation("M2", "the perturbed potential falls along Lawson, which takes at most n(n-1)/2 flips")
+@pytest.mark.obligation(
+    "M2", "the perturbed potential falls along Lawson, which takes at most n(n-1)/2 flips", method="enumeration"
+)
 class TestDescent:
     """Along Lawson's algorithm the perturbed potential falls strictly, ties included, so it ends, within n(n-1)/2
     flips: an edge once gone never comes back."""
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "cocircular octagon", "convex octagon"])
-    def test_every_start(self, name: str) -> None:
+    def test_every_start(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         exact = oracles.rationals(points)
-        for start in islice(triangulations(points), 0, None, 5):
+        starts = list(islice(triangulations(points), 0, None, 5))
+        for start in starts:
             met = flip_while(points, start, is_locally_delaunay)
             assert descends(exact, met)
             assert len(met) - 1 <= len(points) * (len(points) - 1) // 2
@@ -171,6 +176,7 @@ class TestDescent:
                 edges = [{frozenset(e) for a, b, c in t for e in ((a, b), (b, c), (c, a))} for t in (before, after)]
                 gone |= edges[0] - edges[1]
                 assert not gone & edges[1]
+        record_property("cases", len(starts))
 
     def test_control_descent_can_fail(self) -> None:
         """Backwards it rises; and with ties unperturbed 6 Phi alone stands still."""
@@ -182,12 +188,14 @@ class TestDescent:
         assert len({mesh_oracle.potential(exact, t) for t in met}) == 1
 
 
-@pytest.mark.obligation("M3", "there are as many triangulations as published, and flips connect them")
+@pytest.mark.obligation(
+    "M3", "there are as many triangulations as published, and flips connect them", method="enumeration"
+)
 class TestCounts:
     """The enumerators find the published number of triangulations, each once and admissible; flips reach them all."""
 
     @pytest.mark.parametrize(("points", "count"), COUNTS.values(), ids=COUNTS.keys())
-    def test_published(self, points: list[tuple[int, int]], count: int) -> None:
+    def test_published(self, points: list[tuple[int, int]], count: int, record_property: Record) -> None:
         found = list(triangulations(points))
         assert len(found) == len(set(found)) == count
         exact = oracles.rationals(points)
@@ -195,9 +203,10 @@ class TestCounts:
             assert oracles.is_admissible(exact, t)
             assert oracles.covers_hull(exact, t)
             assert {v for row in t for v in row} == set(range(len(points)))
+        record_property("cases", count)
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon"])
-    def test_flip_graph_is_connected(self, name: str) -> None:
+    def test_flip_graph_is_connected(self, name: str, record_property: Record) -> None:
         points = COUNTS[name][0]
         everything = set(triangulations(points))
         reached = {min(everything)}
@@ -212,23 +221,35 @@ class TestCounts:
                         reached.add(rows(surface))
                         frontier.append(rows(surface))
         assert reached == everything
+        record_property("cases", len(everything))
+
+    @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon"])
+    def test_control_one_diagonal_too_few(self, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """An enumeration that leaves out one of the empty triangles: its count is another one."""
+        empty = enumeration._empty_triangles
+        monkeypatch.setattr(enumeration, "_empty_triangles", lambda points: empty(points)[1:])
+        with pytest.raises(AssertionError):
+            self.test_published(*COUNTS[name], print)
 
 
 @pytest.mark.obligation(
-    "M3", "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal"
+    "M3",
+    "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal",
+    method="enumeration",
 )
 class TestOneSink:
     """From every triangulation Lawson's algorithm ends in the one whose perturbed circles are empty, which is also what
     insertion builds, and whose smallest angle is the largest of all."""
 
     @pytest.mark.parametrize(("points", "count"), CASES.values(), ids=CASES.keys())
-    def test_every_start(self, points: list[tuple[int, int]], count: int) -> None:
+    def test_every_start(self, points: list[tuple[int, int]], count: int, record_property: Record) -> None:
         expected = mesh_oracle.delaunay_triangles(oracles.rationals(points))
         inserted = delaunay(points)
         assert canonical_triangles(inserted.triangles.tolist()) == expected
         most = len(points) * (len(points) - 1) // 2
         flips = set()
-        for start in islice(triangulations(points), 0, None if count > 0 else 40, max(1, count // 500)):
+        starts = list(islice(triangulations(points), 0, None if count > 0 else 40, max(1, count // 500)))
+        for start in starts:
             mesh = lawson(points, start)
             assert canonical_triangles(mesh.triangles.tolist()) == expected
             assert mesh.work.flips <= most
@@ -236,15 +257,17 @@ class TestOneSink:
             flips.add(mesh.work.flips)
         assert len(flips) > 1
         assert mesh.canonical() == inserted.canonical()
+        record_property("cases", len(starts))
 
     @pytest.mark.parametrize("name", ["3 x 3 grid", "convex octagon", "cocircular octagon"])
-    def test_smallest_angle(self, name: str) -> None:
+    def test_smallest_angle(self, name: str, record_property: Record) -> None:
         exact = oracles.rationals(COUNTS[name][0])
         best = mesh_oracle.sharpest_corner(exact, mesh_oracle.delaunay_triangles(exact))
         others = [mesh_oracle.sharpest_corner(exact, t) for t in triangulations(COUNTS[name][0])]
         assert min(others) == best
         if name != "cocircular octagon":
             assert max(others) > best
+        record_property("cases", len(others))
 
     def test_control_without_perturbation_there_are_many(self) -> None:
         """The uniqueness above comes from the perturbation: the plain test ends wherever the ties were at the start."""
@@ -268,7 +291,7 @@ class TestOneSink:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M3", "Lawson ends there from starts far away")
+@pytest.mark.obligation("M3", "Lawson ends there from starts far away", method="named cases", control_in="TestOneSink")
 class TestManyPoints:
     """The same from a start that has nothing to do with Delaunay: a fan of needles, and equal diagonals."""
 
@@ -296,7 +319,9 @@ class TestManyPoints:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M5", "constrained flips end in THE constrained Delaunay triangulation, from every start")
+@pytest.mark.obligation(
+    "M5", "constrained flips end in THE constrained Delaunay triangulation, from every start", method="enumeration"
+)
 class TestConstrained:
     """From any triangulation in which the segments are edges, the flips of the others end in the triangulation that
     inserting the segments gives."""
@@ -348,6 +373,7 @@ class TestConstrained:
             lawson(square, [(0, 1, 2), (0, 2, 3)], segments=[(1, 1)])
 
     def test_control_the_segment_is_what_keeps_an_edge(self) -> None:
+        """The segment left out."""
         points, start = [(0, 0), (4, 0), (5, 3), (0, 1)], [(0, 1, 2), (0, 2, 3)]
         free, kept = lawson(points, start), lawson(points, start, segments=[(2, 0)])
         assert (free.work.flips, kept.work.flips) == (1, 0)

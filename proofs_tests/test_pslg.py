@@ -81,7 +81,9 @@ def graphs(draw: st.DrawFn) -> tuple[list[Point], list[tuple[int, int]], list[Po
     return points, segments, [*places[n:], *draw(st.lists(st.sampled_from(points), max_size=1))]
 
 
-@pytest.mark.obligation("P1", "a PSLG is refused exactly for the faults that it has, and all of them are named")
+@pytest.mark.obligation(
+    "P1", "a PSLG is refused exactly for the faults that it has, and all of them are named", method="property-based"
+)
 class TestEveryFaultIsFound:
     """The faults are those of brute force in fractions: no more, no fewer, with the same indices."""
 
@@ -239,7 +241,9 @@ class TestAllAtOnce:
 coordinates = st.sampled_from([0.0, -0.0, 1.0, 5e-324, -5e-324, 1e308, math.nextafter(1.0, 2.0)])
 
 
-@pytest.mark.obligation("P2", "points at the same position, and only those, share a representative: the first")
+@pytest.mark.obligation(
+    "P2", "points at the same position, and only those, share a representative: the first", method="property-based"
+)
 class TestDuplicates:
     """representative[i] is the first j with the position of i; -0.0 is 0.0, and no two other doubles are equal."""
 
@@ -256,6 +260,7 @@ class TestDuplicates:
         assert order.tolist() == sorted(range(len(points)), key=lambda i: (*points[i], i))
 
     def test_control_an_order_with_a_flaw_is_caught(self) -> None:
+        """An order by x alone."""
         points = np.array([(0.0, 1.0), (0.0, 0.0), (0.0, 1.0)])
         assert first_of_each(points, lexicographic_order(points)).tolist() == [0, 1, 0]
         assert first_of_each(points, np.argsort(points[:, 0], kind="stable").astype(np.int32)).tolist() != [0, 1, 0]

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule, run_state_machine_as_test
 from mypy import api as mypy
 from proofs_tests.enumeration import grid, primal_permutations, reachable_states, triangulations
+from proofs_tests.recording import Record
 
 from exactkernel.jit import COMPILED
 from exactkernel.types import IntArray
@@ -67,7 +68,9 @@ def states() -> list[IntArray]:
 
 
 @pytest.mark.obligation(
-    "M1", "every reachable state of at most four edges is a subdivision of orientable surfaces (Euler)"
+    "M1",
+    "every reachable state of at most four edges is a subdivision of orientable surfaces (Euler)",
+    method="exhaustive",
 )
 class TestEveryState:
     """From k isolated edges splices reach (2k)! states: every permutation of the primal quarter-edges as onext, each
@@ -78,15 +81,16 @@ class TestEveryState:
         assert [len(found) for found in states] == counts
         assert [len(primal_permutations(found)) for found in states] == counts
 
-    def test_axioms_and_counts(self, states: list[IntArray]) -> None:
+    def test_axioms_and_counts(self, states: list[IntArray], record_property: Record) -> None:
         for ring in (ring for found in states for ring in found):
             labels = np.zeros(len(ring) // 2, dtype=np.int32)
             surface = QuadEdge.from_arrays(ring, labels, labels.copy())  # checks the axioms
             onext = ring.tolist()
             vertices = len(cycles(onext, range(0, len(ring), 2)))
             assert surface.counts() == (vertices, len(ring) // 4, len(left_faces(onext)))
+        record_property("cases", sum(map(len, states)))
 
-    def test_euler(self, states: list[IntArray]) -> None:
+    def test_euler(self, states: list[IntArray], record_property: Record) -> None:
         genera = set()
         for onext in (ring.tolist() for ring in states[2]):
             rings, faces = cycles(onext, range(0, len(onext), 2)), left_faces(onext)
@@ -97,6 +101,7 @@ class TestEveryState:
                 assert twice_genus % 2 == 0
                 genera.add(twice_genus // 2)
         assert genera == {0, 1}  # three edges make a torus, too
+        record_property("cases", len(states[2]))
 
     def test_control_a_twisted_edge(self) -> None:
         """The ring of a twisted edge (onext leads to the same edge flipped over) is refused: nothing but orientable
@@ -107,13 +112,15 @@ class TestEveryState:
             QuadEdge.from_arrays(ring, labels, labels.copy())
 
 
-@pytest.mark.obligation("M1", "rot^4 = e, and every operator is what its definition says, in every state")
+@pytest.mark.obligation(
+    "M1", "rot^4 = e, and every operator is what its definition says, in every state", method="exhaustive"
+)
 class TestOperators:
     """rot has order four, sym is its square, and each operator is what it is without the dual: with oprev the inverse
     of onext, lnext = oprev sym, dnext = sym onext sym, and so on; each next is the inverse of its prev."""
 
     @pytest.mark.parametrize("k", [1, 2, 3])
-    def test_definitions(self, k: int, states: list[IntArray]) -> None:
+    def test_definitions(self, k: int, states: list[IntArray], record_property: Record) -> None:
         for ring in states[k - 1]:
             onext = ring.tolist()
             oprev = inverse(onext)
@@ -131,6 +138,7 @@ class TestOperators:
                 assert {operator: operator(ring, q) for operator in expected} == expected
                 if q % 2 == 0:
                     assert algebra.left_next(ring, q) == oprev[q ^ 2]
+        record_property("cases", len(states[k - 1]) * 4 * k)
 
     def test_turns(self) -> None:
         for q in range(16):
@@ -156,13 +164,26 @@ class TestOperators:
                 assert {e.org for e in handle.orbit()} == {handle.org}
                 assert {e.left for e in handle.face()} == {handle.left}
 
+    @pytest.mark.parametrize(("name", "wrong"), [("lnext", "rnext"), ("oprev", "onext"), ("dnext", "lprev")])
+    def test_control_operators_mistaken(
+        self, name: str, wrong: str, states: list[IntArray], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """One operator taken for another."""
+        other = getattr(algebra, wrong)
+        monkeypatch.setattr(algebra, name, lambda ring, q: other(ring, q))
+        with pytest.raises(AssertionError):
+            self.test_definitions(2, states, print)
 
-@pytest.mark.obligation("M1", "splice is an involution that joins or cuts one origin and one left face")
+
+@pytest.mark.obligation(
+    "M1", "splice is an involution that joins or cuts one origin and one left face", method="exhaustive"
+)
 class TestSplice:
     """Splice is its own inverse; it joins two origins or cuts one, and the same with the left faces."""
 
     @pytest.mark.parametrize("k", [1, 2, 3])
-    def test_involution(self, k: int, states: list[IntArray]) -> None:
+    def test_involution(self, k: int, states: list[IntArray], record_property: Record) -> None:
+        tried = 0
         for ring in states[k - 1]:
             onext = ring.tolist()
             rings, faces = cycles(onext, range(0, 4 * k, 2)), left_faces(onext)
@@ -173,8 +194,11 @@ class TestSplice:
                 same_face = any({a, b} <= cycle for cycle in faces)
                 assert len(cycles(after.tolist(), range(0, 4 * k, 2))) == len(rings) + (1 if same_origin else -1)
                 assert len(left_faces(after.tolist())) == len(faces) + (1 if same_face else -1)
+                assert not any(breaks_axioms(after.tolist(), q) for q in range(4 * k))
                 algebra.splice(after, a, b)
                 assert (after == ring).all()
+                tried += 1
+        record_property("cases", tried)
 
     def test_primal_with_dual_is_refused(self) -> None:
         surface = QuadEdge()
@@ -188,6 +212,16 @@ class TestSplice:
                 method(dual)
         surface.check()
 
+    def test_control_the_dual_left_alone(self, states: list[IntArray], monkeypatch: pytest.MonkeyPatch) -> None:
+        """A splice of the primal rings only."""
+
+        def primal_only(ring: IntArray, a: int, b: int) -> None:
+            ring[a], ring[b] = ring[b], ring[a]
+
+        monkeypatch.setattr(algebra, "splice", primal_only)
+        with pytest.raises(AssertionError):
+            self.test_involution(2, states, print)
+
 
 def breaks_axioms(ring: Permutation, q: int) -> bool:
     """Whether onext of q leaves the edges, mixes primal with dual, or e rot onext rot onext differs from e."""
@@ -199,17 +233,22 @@ def breaks_axioms(ring: Permutation, q: int) -> bool:
     return back // 4 * 4 + (back + 1) % 4 != q
 
 
-@pytest.mark.obligation("M1", "check accepts just the edge algebras and names the quarter-edge that breaks an axiom")
+@pytest.mark.obligation(
+    "M1", "check accepts just the edge algebras and names the quarter-edge that breaks an axiom", method="corruption"
+)
 class TestCheck:
     """check() accepts the states above and names the first quarter-edge that breaks an axiom in any other."""
 
-    def test_control_every_corruption(self, states: list[IntArray]) -> None:
+    def test_control_every_corruption(self, states: list[IntArray], record_property: Record) -> None:
+        """Every entry of every state replaced by every other value, holes and out of range included."""
         labels = np.zeros(4, dtype=np.int32)
+        tried = 0
         for ring in states[1]:
             for q in range(len(ring)):
                 for wrong in (value for value in range(-2, len(ring) + 2) if value != ring[q]):
                     corrupt = ring.copy()
                     corrupt[q] = wrong
+                    tried += 1
                     with pytest.raises(TopologyError, match=r"quarter-edge \d+") as raised:
                         QuadEdge.from_arrays(corrupt, labels, labels.copy())
                     entries = corrupt.tolist()
@@ -218,6 +257,7 @@ class TestCheck:
                         assert named == next(q for q in range(len(entries)) if breaks_axioms(entries, q))
                     else:  # a hole: whoever leads there, or lies beside it
                         assert breaks_axioms(entries, named) or entries[named] == -1 or entries[entries[named]] == -1
+        record_property("cases", tried)
 
 
 def small_surfaces() -> Iterator[QuadEdge]:
@@ -257,7 +297,9 @@ def inner_edges(surface: QuadEdge) -> list[QuarterEdge]:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M1", "swap, split_face, connect and delete_edge are what splices make of them")
+@pytest.mark.obligation(
+    "M1", "swap, split_face, connect and delete_edge are what splices make of them", method="exhaustive"
+)
 class TestDerivedOperations:
     """swap, split_face and delete_edge are what make_edge and splice make of them, entry by entry."""
 
@@ -275,6 +317,7 @@ class TestDerivedOperations:
                         assert {f.left for f in side.face()} == {side.left}
 
     def test_control_a_wrong_swap_is_seen(self) -> None:
+        """A swap twice, which turns the edge round."""
         surface = next(small_surfaces())
         index = inner_edges(surface)[0]
         ours, theirs = copied(surface), copied(surface)
@@ -476,7 +519,7 @@ def rejected(check: Callable[[], None]) -> bool:
     return False
 
 
-@pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step")
+@pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step", method="stateful machine")
 class TestModel:
     """After any sequence of operations, deletions included, the quad-edge is its model, and an edge algebra."""
 
@@ -484,6 +527,7 @@ class TestModel:
         run_state_machine_as_test(Model, settings=settings(max_examples=100, stateful_step_count=30))
 
     def test_control_lost_splice(self) -> None:
+        """A splice that the model does and the quad-edge does not."""
         machine = Model()
         machine.make()
         machine.make()
@@ -492,6 +536,7 @@ class TestModel:
         assert rejected(machine.is_the_model)
 
     def test_control_corrupt_ring(self) -> None:
+        """One entry of a ring overwritten."""
         machine = Model()
         machine.make()
         machine.surface.ring_of(QuarterEdge(0))[0] = 2
@@ -499,7 +544,9 @@ class TestModel:
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("M1", "triangles to quad-edge and back is the identity; anything else is refused")
+@pytest.mark.obligation(
+    "M1", "triangles to quad-edge and back is the identity; anything else is refused", method="enumeration"
+)
 class TestFromTriangles:
     """from_triangles and triangles are inverse to each other; what is no triangulation is refused, not walked into."""
 
@@ -528,12 +575,14 @@ class TestFromTriangles:
         ],
     )
     def test_control_bad_corners(self, triangles: list[tuple[int, int, int]], culprits: tuple[int, ...]) -> None:
+        """Corners out of range or repeated, an edge used twice in one direction, a triangle twice."""
         with pytest.raises(TopologyError) as raised:
             QuadEdge.from_triangles(triangles)
         assert raised.value.indices == culprits
 
     @pytest.mark.parametrize("entry", [0, 1, 2, -2])
     def test_control_bad_neighbors(self, entry: int) -> None:
+        """Every entry of the neighbors replaced by every other one; a row missing."""
         triangles = [(0, 1, 2), (0, 2, 3)]
         good = np.array([(-1, 1, -1), (-1, -1, 0)], dtype=np.int32)
         assert len(QuadEdge.from_triangles(triangles, good)) == 5
@@ -617,12 +666,13 @@ surface.connect(edge, edge.rot.onext)  # wrong
 """
 
 
-@pytest.mark.obligation("M1", "primal and dual, vertices and faces are different types")
+@pytest.mark.obligation("M1", "primal and dual, vertices and faces are different types", method="named cases")
 class TestTypedHandles:
     """To a type checker primal and dual edges, vertices and faces are different things: it rejects just the lines that
     mix them."""
 
     def test_control_mypy_rejects_just_the_wrong_lines(self, tmp_path: Path) -> None:
+        """Lines that mix primal and dual, or vertices and faces."""
         script = tmp_path / "snippet.py"
         script.write_text(SNIPPET)
         root = Path(__file__).parents[1]

@@ -70,7 +70,10 @@ def cycle(points: list[list[float]]) -> tuple[tuple[float, ...], ...]:
 
 
 @pytest.mark.obligation(
-    "M5", "the states, islands and all, are triangulated: verified, with their exact area and rings"
+    "M5",
+    "the states, islands and all, are triangulated: verified, with their exact area and rings",
+    method="named cases",
+    control_in="TestCounties",
 )
 @pytest.mark.parametrize("name", sorted(STATES) if COMPILED else ["CT", "KY", "RI"])
 class TestStates:
@@ -87,7 +90,9 @@ class TestStates:
 
 
 @pytest.mark.obligation(
-    "M5", "counties with shared borders: one edge for two segments, the area of all to the last bit"
+    "M5",
+    "counties with shared borders: one edge for two segments, the area of all to the last bit",
+    method="named cases",
 )
 @pytest.mark.parametrize("name", AGREEING)
 class TestCounties:
@@ -117,7 +122,12 @@ class TestCounties:
         assert twice_area(mesh.points, [loop.tolist() for loop in mesh.boundary()]) != shoelace(moved)
 
 
-@pytest.mark.obligation("M5", "counties whose borders disagree are triangulated, or the crossings named and split")
+@pytest.mark.obligation(
+    "M5",
+    "counties whose borders disagree are triangulated, or the crossings named and split",
+    method="named cases",
+    control_in="TestCounties",
+)
 @pytest.mark.parametrize("name", DISAGREEING)
 class TestDisagreement:
     """Counties whose borders cross are refused with the pairs that do, and split on demand; where they only overlap,
@@ -139,7 +149,9 @@ class TestDisagreement:
         assert areas[0] < areas[1] < shoelace(COUNTIES[name])
 
 
-@pytest.mark.obligation("M5", "all states as one graph, crossings split")
+@pytest.mark.obligation(
+    "M5", "all states as one graph, crossings split", method="named cases", control_in="TestCounties"
+)
 class TestOneGraph:
     """All states as one graph of rings: borders are shared, and at one place cross; split, it is verified."""
 
@@ -158,7 +170,12 @@ class TestOneGraph:
             assert [vertices[0, 0], vertices[-1, 1]] == mesh.representative[ends].tolist()
 
 
-@pytest.mark.obligation("M5", "all counties as one graph, borders shared, crossings split, by either rule")
+@pytest.mark.obligation(
+    "M5",
+    "all counties as one graph, borders shared, crossings split, by either rule",
+    method="named cases",
+    control_in="TestCounties",
+)
 class TestAllCounties:
     """All counties as one graph of rings (compiled; else those of Virginia), triangulated and verified."""
 
@@ -174,7 +191,12 @@ class TestAllCounties:
         assert not lost.ok
 
 
-@pytest.mark.obligation("ARR6", "the counties: borders that cross are noded, and all but a few points stay bit for bit")
+@pytest.mark.obligation(
+    "ARR6",
+    "the counties: borders that cross are noded, and all but a few points stay bit for bit",
+    method="named cases",
+    control_in="proofs_tests/test_crossings.py::TestArrangement",
+)
 class TestArrangedCounties:
     """All counties as one graph of rings (compiled; else those of Virginia): borders that nearly coincide creep when
     they are noded, and are snapped; all else stays where it was, and what comes out is noded."""

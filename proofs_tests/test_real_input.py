@@ -33,7 +33,12 @@ def cities(name: str) -> FloatArray:
     return points[sorted({*range(0, len(points), 100), *again})]
 
 
-@pytest.mark.obligation("M4", "real cities, duplicates and all, are triangulated as brute force and scipy say")
+@pytest.mark.obligation(
+    "M4",
+    "real cities, duplicates and all, are triangulated as brute force and scipy say",
+    method="named cases",
+    control_in="TestKnownCases",
+)
 @EACH
 class TestCities:
     """All cities are triangulated: the verifier agrees, each city has the vertex at its place, no place has two, and
@@ -130,7 +135,7 @@ CORPUS: dict[str, tuple[FloatArray, int | None]] = {
 }
 
 
-@pytest.mark.obligation("M4", "where GEOS and scipy are wrong, insertion is right")
+@pytest.mark.obligation("M4", "where GEOS and scipy are wrong, insertion is right", method="named cases")
 class TestKnownCases:
     """On the published and the known failures of other meshers the result is that of brute force, and verified."""
 

@@ -1,6 +1,7 @@
 """R1, R2: what refinement returns is what it says, for every valid graph; and it always returns."""
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -150,7 +151,9 @@ def steiner_faults(done: Refinement, start: Triangulation, case: Case) -> list[s
     return faults
 
 
-@pytest.mark.obligation("R1", "theorems A, B, E, F on the output: constrained Delaunay, covering the domain")
+@pytest.mark.obligation(
+    "R1", "theorems A, B, E, F on the output: constrained Delaunay, covering the domain", method="property-based"
+)
 class TestMesh:
     """Whatever is asked for, complete or not, the result is a constrained Delaunay triangulation of the domain: by
     brute force in fractions, and by the verifier."""
@@ -190,11 +193,13 @@ class TestMesh:
         ],
     )
     def test_control_corrupted(self, corrupt: Callable[[Output], Output]) -> None:
+        """Triangles lost, doubled or turned, a segment or a point that is not there."""
         output = output_of(refine(PLATE, max_area=1.0), PLATE)
         assert not refine_oracle.mesh_faults(output, Fraction(32))
         assert refine_oracle.mesh_faults(corrupt(output), Fraction(32))
 
     def test_control_a_flipped_edge(self) -> None:
+        """The other diagonal."""
         graph = PSLG([(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)], [(0, 1), (1, 2), (2, 3), (3, 0)])
         points = [*map(tuple, graph.points.tolist())]
         segments = [*map(tuple, graph.segments.tolist())]
@@ -202,7 +207,9 @@ class TestMesh:
             assert (not refine_oracle.mesh_faults(Output(points, triangles, points, segments))) is sound
 
 
-@pytest.mark.obligation("R1", "angle and area bounds hold exactly, and every exception is listed with its reason")
+@pytest.mark.obligation(
+    "R1", "angle and area bounds hold exactly, and every exception is listed with its reason", method="property-based"
+)
 class TestAccount:
     """The triangles that are left are those that brute force finds bad; reasons apply; points, parents, radii are
     true."""
@@ -221,6 +228,7 @@ class TestAccount:
         assert not steiner_faults(refined(case), start, case)
 
     def test_control_a_missing_exception_is_noticed(self) -> None:
+        """An exception left out, a reason that does not apply, radii halved."""
         case = Case(PLATE, 20.0, 0.3, Steiner.ANYWHERE, 3, False)
         done = refined(case)
         output = output_of(done, PLATE)
@@ -261,7 +269,11 @@ class TestAccount:
                 assert radius[v] >= least * radius[parent], (v, parent)
 
 
-@pytest.mark.obligation("R1", "conforming: every edge of the boundary and of a segment Gabriel, circumcentres inside")
+@pytest.mark.obligation(
+    "R1",
+    "conforming: every edge of the boundary and of a segment Gabriel, circumcentres inside",
+    method="property-based",
+)
 class TestConforming:
     """With ``conforming``, wherever the points last: Gabriel by brute force and by the verifier."""
 
@@ -280,15 +292,30 @@ class TestConforming:
             assert not refine_oracle.encroached(output_of(done, domain))
 
     def test_control_without_it_segments_are_encroached(self) -> None:
+        """The refinement without ``conforming``."""
         tent = PSLG([(0.0, 0.0), (12.0, 0.0), (6.0, 4.0)], [(0, 1), (1, 2), (2, 0)])
         assert refine_oracle.encroached(output_of(refine(tent, min_angle=0), tent))
         done = refine(tent, min_angle=0, conforming=True)
         assert not refine_oracle.encroached(output_of(done, tent))
 
 
-@pytest.mark.obligation("R1", "size fields, unsuitable triangles, areas of triangles and regions")
+@pytest.mark.obligation(
+    "R1", "size fields, unsuitable triangles, areas of triangles and regions", method="property-based"
+)
 class TestAskedFor:
     """What the user's functions object to is gone, or listed; areas hold where they are asked for."""
+
+    @staticmethod
+    def too_long(done: Refinement, size: Callable[[FloatArray], FloatArray]) -> set[int]:
+        """Return the triangles with an edge that is longer than the size at their centroid."""
+        corners = done.triangulation.points[done.triangulation.triangles]
+        found = set()
+        for i, (triangle, limit) in enumerate(zip(corners.tolist(), size(corners.mean(axis=1)).tolist(), strict=True)):
+            a, b, c = oracles.rationals(triangle)
+            longest = max(oracles.squared_distance(p, q) for p, q in ((a, b), (b, c), (c, a)))
+            if longest > Fraction(limit) ** 2:
+                found.add(i)
+        return found
 
     @FEWER
     @given(domains(), st.floats(0.05, 1.0))
@@ -303,14 +330,7 @@ class TestAskedFor:
             return nearer
 
         done = refine(domain, size=size, max_steiner=300)
-        mesh = done.triangulation
-        corners = mesh.points[mesh.triangles]
-        limits = [Fraction(float(s)) ** 2 for s in size(corners.mean(axis=1))]
-        left = set(done.unrefined.tolist())
-        for i, (triangle, limit) in enumerate(zip(corners.tolist(), limits, strict=True)):
-            a, b, c = oracles.rationals(triangle)
-            longest = max(oracles.squared_distance(p, q) for p, q in ((a, b), (b, c), (c, a)))
-            assert longest <= limit or i in left
+        assert self.too_long(done, size) <= set(done.unrefined.tolist())
         if len(done.steiner) < 300:
             assert Reason.BUDGET not in done.reasons
 
@@ -362,8 +382,13 @@ class TestAskedFor:
                 claims=["region-areas", "regions"],
             ).raise_if_failed()  # fmt: skip
 
+    def test_control_without_being_asked(self) -> None:
+        """The size left out: edges are too long, and no triangle is listed for it."""
+        done = refine(PLATE)
+        assert not self.too_long(done, lambda xy: np.full(len(xy), 0.5)) <= set(done.unrefined.tolist())
 
-@pytest.mark.obligation("R1", "refining further, again and elsewhere gives the same")
+
+@pytest.mark.obligation("R1", "refining further, again and elsewhere gives the same", method="property-based")
 class TestRepetition:
     """The result depends on the input alone; what is good is left as it is; a power of two changes nothing."""
 
@@ -411,8 +436,15 @@ class TestRepetition:
         assert np.array_equal(np.ldexp(one.triangulation.points, exponent), two.triangulation.points)
         assert np.array_equal(one.triangulation.triangles, two.triangulation.triangles)
 
+    def test_control_one_unit(self) -> None:
+        """One coordinate moved by one unit in the last place: the points are others."""
+        moved = PLATE.points.copy()
+        moved[2, 0] = np.nextafter(moved[2, 0], 99.0)
+        one, two = refine(PLATE, max_area=0.5), refine(PSLG(moved, PLATE.segments, holes=PLATE.holes), max_area=0.5)
+        assert not np.array_equal(one.triangulation.points, two.triangulation.points)
 
-@pytest.mark.obligation("R2", "refinement ends, for every valid graph and every angle")
+
+@pytest.mark.obligation("R2", "refinement ends, for every valid graph and every angle", method="property-based")
 class TestTermination:
     """Counted, not timed: a limit on points that is far above what is needed is not reached."""
 
@@ -453,6 +485,14 @@ class TestTermination:
             if max(a, b) >= first:
                 assert oracles.squared_distance(points[a], points[b]) >= Fraction(least) ** 2
         assert set(done.reasons.tolist()) <= {*Reason} - {Reason.FORBIDDEN}
+
+    def test_control_without_the_rule_it_goes_on(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Edges that may become ever shorter for the sake of an angle: the limit on points is reached."""
+        points = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.3, 1.7), (1.1, 2.9), (3.3, 0.4)]
+        graph, limit = PSLG(points, [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5)]), 2000
+        assert Reason.BUDGET not in refine(graph, min_angle=40.0, max_steiner=limit).reasons
+        monkeypatch.setattr(sys.modules["exactmesh.refinement.refine"], "_SHRINKS", ((60.0, 0.0),))
+        assert Reason.BUDGET in refine(graph, min_angle=40.0, max_steiner=limit).reasons
 
 
 BAD_OPTIONS: list[tuple[dict[str, object], type[Exception], str]] = [
@@ -499,7 +539,7 @@ BAD_OPTIONS: list[tuple[dict[str, object], type[Exception], str]] = [
 ]
 
 
-@pytest.mark.obligation("R2", "bad options: a typed error, or an honest partial result")
+@pytest.mark.obligation("R2", "bad options: a typed error, or an honest partial result", method="named cases")
 class TestBadInput:
     """What is no option names itself; what asks for too much gets a partial result that says so."""
 
@@ -605,3 +645,10 @@ class TestBadInput:
         assert verify(done.triangulation.points, done.triangulation.triangles, claims=["admissible"]).verdict(
             Property.ADMISSIBLE
         ) is Verdict.HOLDS  # fmt: skip
+
+    def test_control_good_options(self) -> None:
+        """None: the same options with values that they may have are taken."""
+        done = refine(
+            PLATE, min_angle=20, max_area=1.0, min_edge=1e-3, size=lambda xy: np.ones(len(xy)), max_steiner=999
+        )
+        assert done.complete

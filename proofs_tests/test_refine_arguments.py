@@ -42,7 +42,7 @@ def longest_edge_squared(mesh: Triangulation) -> Fraction:
     return max((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 for a, b in ends)
 
 
-@pytest.mark.obligation("R2", "the domain of a graph is what carve says, refined or not")
+@pytest.mark.obligation("R2", "the domain of a graph is what carve says, refined or not", method="named cases")
 class TestCarve:
     """Law: refine(graph, carve=c) refines what constrained_delaunay(graph, carve=c) triangulates."""
 
@@ -54,6 +54,7 @@ class TestCarve:
         assert area(refined) == area(domain)
 
     def test_control_the_domains_differ(self) -> None:
+        """Carving turned off: the area is another."""
         assert area(refine(PLATE).triangulation) == 11
         assert area(refine(PLATE, carve=False).triangulation) == 12
 
@@ -64,7 +65,9 @@ class TestCarve:
             refine(graph)
 
 
-@pytest.mark.obligation("R2", "a number as size, or from a size function, is that length everywhere")
+@pytest.mark.obligation(
+    "R2", "a number as size, or from a size function, is that length everywhere", method="named cases"
+)
 class TestSize:
     """Law: a length as ``size``, and a function that returns one number, mean that length everywhere."""
 
@@ -81,6 +84,7 @@ class TestSize:
             assert found.triangles.tobytes() == expected.triangles.tobytes()
 
     def test_control_without_it_edges_are_longer(self) -> None:
+        """The size left out."""
         assert longest_edge_squared(refine(PLATE).triangulation) > Fraction(0.75) ** 2
 
     @pytest.mark.parametrize("size", [0, -1.0, float("nan"), True, "0.5", np.ones(3)])

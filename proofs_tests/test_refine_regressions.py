@@ -1,5 +1,6 @@
 """What went wrong once in refinement, each with the input that showed it."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -19,7 +20,12 @@ def is_right(done: Refinement) -> bool:
     return verify(mesh.points, mesh.triangles, segments=mesh.segments, domain=mesh.domain, claims=claims).ok
 
 
-@pytest.mark.obligation("R2", "lengths that halve because of what is near by are not taken for a run that never ends")
+@pytest.mark.obligation(
+    "R2",
+    "lengths that halve because of what is near by are not taken for a run that never ends",
+    method="named cases",
+    control_in="TestExcuses",
+)
 class TestChannels:
     """Segments far longer than they are apart, which meet at right angles or not at all, are refined to the end."""
 
@@ -36,7 +42,9 @@ class TestChannels:
         assert len(done.unrefined) == 0
 
 
-@pytest.mark.obligation("R1", "only triangles across from an input angle below 60 degrees are excused by one")
+@pytest.mark.obligation(
+    "R1", "only triangles across from an input angle below 60 degrees are excused by one", method="named cases"
+)
 class TestExcuses:
     """A domain without small angles has no triangle that a small input angle excuses."""
 
@@ -54,11 +62,14 @@ class TestExcuses:
         assert not any(angle_below([tuple(p) for p in corner], 30) for corner in corners.tolist())
 
     def test_control_a_needle_has_some(self) -> None:
+        """A domain that has a small angle."""
         done = refine(PSLG([(0, 0), (9, 0), (9, 1)], [(0, 1), (1, 2), (2, 0)]), min_angle=30)
         assert set(done.reasons.tolist()) == {Reason.SMALL_INPUT_ANGLE}
 
 
-@pytest.mark.obligation("R1", "where points are rounded off their segments, the mesh is constrained Delaunay still")
+@pytest.mark.obligation(
+    "R1", "where points are rounded off their segments, the mesh is constrained Delaunay still", method="named cases"
+)
 class TestBentSegments:
     """Segments at tiny angles, made Gabriel down to the last bits: what is returned is right, complete or not."""
 
@@ -80,8 +91,19 @@ class TestBentSegments:
             start, end = (tuple(mesh.points[v].tolist()) for v in (a, b))
             assert all(diametral(start, end, tuple(p)) <= 0 for p in mesh.points.tolist())
 
+    def test_control_a_point_moved(self) -> None:
+        """A Steiner point moved off its place: the verifier's answer is no."""
+        points = [(0, 0), (4, 0), (4, 4), (0, 4), (2, 3), (0, 1), (2, 4), (3, 0)]
+        done = refine(PSLG(points, [*RING, (4, 5), (5, 6), (6, 7), (7, 4)]), min_angle=0, conforming=True)
+        moved = done.triangulation.points.copy()
+        moved[-1] += 0.5
+        assert is_right(done)
+        assert not is_right(replace(done, triangulation=replace(done.triangulation, points=moved)))
 
-@pytest.mark.obligation("R2", "sizes below what forbidden edges allow are given up, not halved for ever")
+
+@pytest.mark.obligation(
+    "R2", "sizes below what forbidden edges allow are given up, not halved for ever", method="named cases"
+)
 class TestForbiddenEdges:
     """Where the boundary must not be divided, triangles on it are left, with the reason."""
 
@@ -92,8 +114,17 @@ class TestForbiddenEdges:
         assert len(done.triangulation.boundary()[0]) == 4
         assert is_right(done)
 
+    def test_control_allowed(self) -> None:
+        """The same with a boundary that may be divided: nothing is given up."""
+        plate = PSLG.from_rings([[(0, 0), (9, 0), (9, 1), (0, 1)]])
+        done = refine(plate, min_angle=0, size=lambda p: np.full(len(p), 0.25))
+        assert done.complete
+        assert len(done.triangulation.boundary()[0]) > 4
 
-@pytest.mark.obligation("R1", "no edge with a new end is shorter than min_edge, by as little as may be")
+
+@pytest.mark.obligation(
+    "R1", "no edge with a new end is shorter than min_edge, by as little as may be", method="named cases"
+)
 class TestLeastEdge:
     """A length that rounds to the least edge, and is shorter, is refused; one that is the least edge is not."""
 
@@ -107,6 +138,7 @@ class TestLeastEdge:
             assert dx * dx + dy * dy >= Fraction(1, 4)
 
     def test_control_equal(self) -> None:
+        """A length that is the least edge exactly."""
         square = PSLG([(0, 0), (4, 0), (4, 4), (0, 4)], RING)
         mesh = refine(
             square, unsuitable=lambda corners, _: np.ones(len(corners), dtype=bool), min_edge=0.5
@@ -114,7 +146,9 @@ class TestLeastEdge:
         assert mesh.statistics().shortest_edge == 0.5
 
 
-@pytest.mark.obligation("R1", "the displacement is a bound of the root of its exact square, at any scale")
+@pytest.mark.obligation(
+    "R1", "the displacement is a bound of the root of its exact square, at any scale", method="named cases"
+)
 class TestDisplacement:
     """Squares beyond the doubles, above and below, have roots that are doubles."""
 
@@ -126,6 +160,7 @@ class TestDisplacement:
         assert 0.0 < done.displacement < 1e-14 * scale
 
     def test_control_exact(self) -> None:
+        """A domain whose points are not rounded."""
         assert refine(PSLG.from_rings([[(0, 0), (4, 0), (4, 2), (0, 1)]]), min_angle=33).displacement == 0.0
 
 

@@ -145,7 +145,9 @@ def carved(pslg: PSLG) -> Triangulation | Faults:
         ]
 
 
-@pytest.mark.obligation("M5", "the domain is what ray casting and floods say; what is wrong with it is named")
+@pytest.mark.obligation(
+    "M5", "the domain is what ray casting and floods say; what is wrong with it is named", method="property-based"
+)
 class TestDomain:
     """A triangle of the hull is kept just if it is in the domain: by parity, an odd number of segments lies on a ray
     from it, each of several coincident ones counted; by seeds, no path over edges that are no segments leads from it to
@@ -297,7 +299,9 @@ RINGS: dict[str, tuple[list[list[tuple[float, float]]], int, int, int]] = {
 }  # fmt: skip
 
 
-@pytest.mark.obligation("M5", "named arrangements of rings have the area and the loops that they have")
+@pytest.mark.obligation(
+    "M5", "named arrangements of rings have the area and the loops that they have", method="named cases"
+)
 @pytest.mark.parametrize(("rings", "area", "outer", "holes"), RINGS.values(), ids=RINGS.keys())
 class TestRings:
     """By even-odd, and by seeds where rings do not touch themselves, the area is the right one, exactly, and so are the
@@ -343,7 +347,9 @@ def check_loops(mesh: Triangulation, loops: Sequence[Sequence[int]]) -> None:
     assert sum(area > 0 for area in areas) == len(pieces)
 
 
-@pytest.mark.obligation("M5", "the boundary is simple loops with the domain on their left, area for area")
+@pytest.mark.obligation(
+    "M5", "the boundary is simple loops with the domain on their left, area for area", method="property-based"
+)
 class TestBoundary:
     """boundary() consists of simple loops; their sides are the sides with a triangle on the left only, each once; each
     piece that holds together over edges has one outer loop, counterclockwise; areas add up exactly."""
@@ -367,6 +373,7 @@ class TestBoundary:
         ids=["one missing", "turned round", "begun elsewhere", "two as one"],
     )
     def test_control_damaged(self, damage: Callable[[list[list[int]]], list[list[int]]]) -> None:
+        """A loop missing, turned round, begun elsewhere, two joined."""
         mesh = rings_domain(RINGS["four holes around an island"][0])
         loops = [loop.tolist() for loop in mesh.boundary()]
         check_loops(mesh, loops)
@@ -400,7 +407,7 @@ def expected_markers(
     return edges, vertices
 
 
-@pytest.mark.obligation("M5", "markers follow Triangle's rule, and attributes their points")
+@pytest.mark.obligation("M5", "markers follow Triangle's rule, and attributes their points", method="property-based")
 class TestMarkers:
     """Edges and vertices have the markers that the rule gives them, word for word; attributes are those of the first
     point at the place."""

@@ -153,7 +153,11 @@ def answer(pslg: PSLG, bits: int) -> PSLG | SnappingError | CrossingError:
         return error
 
 
-@pytest.mark.obligation("R1", "a graph that is snapped to a grid is the same drawing, and its segments can be halved")
+@pytest.mark.obligation(
+    "R1",
+    "a graph that is snapped to a grid is the same drawing, and its segments can be halved",
+    method="property-based",
+)
 class TestSnapped:
     """Law: every point goes to the nearest of the grid; the drawing is the same one, by brute force; segments can be
     halved as often as is said. Or it is refused, and what is named is too near."""
@@ -222,8 +226,19 @@ class TestSnapped:
             cross.snapped(20)
         assert len(arrange(cross).pslg.snapped(20).segments) == 4
 
+    def test_control_another_drawing(self) -> None:
+        """A point that has crossed a segment, two points that have become one: the drawing is another."""
+        ring = [[0, 1, 2]]
+        corners = [(0, 0), (4, 0), (0, 4)]
+        before = drawing(exact(np.array([*corners, (1.0, 1.0)])), [], ring)
+        assert drawing(exact(np.array([*corners, (1.0, 0.5)])), [], ring) == before
+        assert drawing(exact(np.array([*corners, (3.0, 3.0)])), [], ring) != before
+        assert drawing(exact(np.array([*corners, (4.0, 0.0)])), [], ring) != before
 
-@pytest.mark.obligation("R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined")
+
+@pytest.mark.obligation(
+    "R1", "a domain that is snapped to a coarse grid is covered exactly when it is refined", method="named cases"
+)
 class TestCovered:
     """Law: of a domain on a coarse grid, acute corners included, no Steiner point is off its segment."""
 
@@ -238,6 +253,7 @@ class TestCovered:
         assert verify(done.triangulation.points, done.triangulation.triangles, domain=domain).ok
 
     def test_control_full_precision(self) -> None:
+        """The same domain, not snapped: it is not covered exactly."""
         domain = PSLG.from_rings([[(0, 0), (0.7, 0.1), (0.3, 0.9)]])
         assert refine(domain, max_area=0.001).displacement_squared > 0
 

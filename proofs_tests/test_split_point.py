@@ -135,7 +135,12 @@ NAMED = {
 }
 
 
-@pytest.mark.obligation("R1", "segments are split exactly on them where doubles allow, else within one ulp")
+@pytest.mark.obligation(
+    "R1",
+    "segments are split exactly on them where doubles allow, else within one ulp",
+    method="property-based",
+    control_in="TestControls",
+)
 class TestSplitPoint:
     """Law: the answer is the double at the dyadic parameter of fewest bits among the neighbours of t, exactly, if there
     is one; else the point at t within one ulp a coordinate; in the box, on the unit."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from proofs_tests import oracles
 from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.recording import Record
 
 from exactmesh.verify import Orientation, Property, Verdict, verify
 
@@ -101,16 +102,23 @@ def all_sets(brute: BruteForce) -> Iterator[tuple[Triangle, ...]]:
         yield tuple(t for i, t in enumerate(triples) if bits >> i & 1)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "every set of triangles over five points is judged as brute force judges it",
+    method="enumeration",
+    control_in="proofs_tests/test_verify_meshes.py::TestAblation",
+)
 class TestEverySetOfFivePoints:
     """For every set of triangles over five points each decided verdict is that of brute force, and only the
     two documented ones are ever undecided."""
 
     @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
-    def test_verdicts(self, points: Points) -> None:
+    def test_verdicts(self, points: Points, record_property: Record) -> None:
         brute = BruteForce(points)
-        for triangles in all_sets(brute):
+        sets = list(all_sets(brute))
+        for triangles in sets:
             assert not disagreements(brute, points, triangles), triangles
+        record_property("cases", len(sets))
 
     def test_brute_force_accepts_and_rejects_each_property(self) -> None:
         """The enumeration is not vacuous: each property is true of some set, and all but the first two false
@@ -133,13 +141,18 @@ def random_triangles(random: Random, n: int, size: int) -> list[Triangle]:
     return triangles
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "random lists of triangles over six and seven points, degenerate ones too, are judged as by brute force",
+    method="differential",
+    control_in="proofs_tests/test_verify_meshes.py::TestAblation",
+)
 class TestRandomSets:
     """The same for random lists over six and seven points of a small grid: any orientation, repeated
     triangles, collinear and coincident points."""
 
     @pytest.mark.parametrize("seed", range(40))
-    def test_any_order_of_corners(self, seed: int) -> None:
+    def test_any_order_of_corners(self, seed: int, record_property: Record) -> None:
         random = Random(seed)
         n = random.choice((6, 7))
         points = [(random.randrange(4), random.randrange(4)) for _ in range(n)]
@@ -148,9 +161,10 @@ class TestRandomSets:
             triangles = random_triangles(random, n, random.randrange(1, 7))
             for orientation in Orientation:
                 assert not disagreements(brute, points, triangles, orientation), (points, triangles)
+        record_property("cases", 10 * len(Orientation))
 
     @pytest.mark.parametrize("seed", range(60))
-    def test_nearly_admissible(self, seed: int) -> None:
+    def test_nearly_admissible(self, seed: int, record_property: Record) -> None:
         """Sets grown by adding triangles that meet the others admissibly, and one that need not: the hard
         negatives."""
         random = Random(seed)
@@ -166,13 +180,18 @@ class TestRandomSets:
             ):
                 triangles.append(t)
                 assert not disagreements(brute, points, triangles), (points, triangles)
+        record_property("cases", len(triangles))
 
 
 #: Meshes whose faults no local check sees; each with the kind of its violation.
 STAR = [(0.0, 0.0)] + [(float(np.cos(a)), float(np.sin(a))) for a in np.arange(5) * 4 * np.pi / 5]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "what only a global condition finds, the double cover first, is found, and its kind is named",
+    method="named cases",
+)
 class TestHardSets:
     """What only a global condition finds is found, and the same mesh without the fault is accepted."""
 
@@ -203,7 +222,8 @@ class TestHardSets:
             ([(0, 0), (2, 0), (4, 0)], [(0, 1, 2)], "zero_area"),
         ],
     )  # fmt: skip
-    def test_kind_of_fault(self, points: Points, triangles: list[Triangle], kind: str) -> None:
+    def test_control_kind_of_fault(self, points: Points, triangles: list[Triangle], kind: str) -> None:
+        """A cell laid over another, cells that cross, hanging nodes, a cell without area."""
         report = verify(points, triangles)
         finding = report.findings[Property.ADMISSIBLE]
         assert finding.verdict is Verdict.FAILS

@@ -17,6 +17,7 @@ from proofs_tests.naive_checker import (
     broken_of_hull,
 )
 from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.recording import Record
 from proofs_tests.test_verify import CONFIGURATIONS, BruteForce, all_sets
 from proofs_tests.test_verify_constrained import Plain
 
@@ -62,27 +63,35 @@ def is_right(points: Points, triangles: Sequence[Triangle]) -> bool:
     )
 
 
-@pytest.mark.obligation("V1", "theorems A to D: the local conditions accept exactly the Delaunay triangulations")
+@pytest.mark.obligation(
+    "V1",
+    "theorems A to D: the local conditions accept exactly the Delaunay triangulations",
+    method="enumeration",
+    control_in="TestHullConditionsAreNecessary",
+)
 class TestHullConditionsSuffice:
-    """For every set of triangles over five points, all conditions hold exactly if brute force finds nothing wrong."""
+    """For sets of triangles over five points, all conditions hold exactly if brute force finds nothing wrong: for every
+    set for which they hold, and for every ninth of the others."""
 
     @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
-    def test_every_set(self, points: Points) -> None:
+    def test_every_set(self, points: Points, record_property: Record) -> None:
         brute = BruteForce(points)
-        accepted = 0
+        accepted = compared = 0
         for i, triangles in enumerate(all_sets(brute)):
             broken = broken_of_hull(brute.points, triangles) if triangles else {"there is no cycle"}
             accepted += not broken
             if not broken or i % 9 == 0:
+                compared += 1
                 verdicts = brute.verdicts(triangles, Orientation.CCW)
                 right = bool(triangles) and all(verdicts[property_] for property_ in DELAUNAY_TRIANGULATION)
                 assert (not broken) is right, triangles
         exact = brute.points
         has_one = len(set(exact)) == 5 and any(oracles.has_area(exact, t) for t in combinations(range(5), 3))
         assert (accepted > 0) is has_one
+        record_property("cases", compared)
 
 
-@pytest.mark.obligation("V2", "theorems A to D: each condition is necessary")
+@pytest.mark.obligation("V2", "theorems A to D: each condition is necessary", method="ablation")
 class TestHullConditionsAreNecessary:
     """Without any one condition the checker accepts a mesh that is wrong; the verifier refuses it, and says why."""
 
@@ -100,6 +109,7 @@ class TestHullConditionsAreNecessary:
 
     @pytest.mark.parametrize(("points", "triangles"), [(SQUARE, HALVES), (KITE, [(0, 1, 3), (1, 2, 3)])])
     def test_control_nothing_is_broken(self, points: Points, triangles: list[Triangle]) -> None:
+        """None: sound meshes break no condition."""
         assert not broken_of_hull(oracles.rationals(points), triangles)
         assert verify(points, triangles).ok
 
@@ -112,7 +122,7 @@ POLYGONS: dict[str, Points] = {
 }
 
 
-@pytest.mark.obligation("V2", "theorem C: each condition is necessary")
+@pytest.mark.obligation("V2", "theorem C: each condition is necessary", method="ablation")
 class TestConvexConditionsAreNecessary:
     """A closed polygon that turns left or goes straight on, never back, and changes its lexicographic direction twice,
     is convex; without any one of the three conditions one passes that is not."""
@@ -121,7 +131,8 @@ class TestConvexConditionsAreNecessary:
         assert tuple(POLYGONS) == CONVEX_CONDITIONS
 
     @pytest.mark.parametrize(("name", "polygon"), POLYGONS.items(), ids=POLYGONS.keys())
-    def test_ablation(self, name: str, polygon: Points) -> None:
+    def test_control_ablation(self, name: str, polygon: Points) -> None:
+        """Polygons that are not convex and break one of the three conditions alone."""
         exact = oracles.rationals(polygon)
         assert broken_by_cycle(exact, range(len(exact))) == {name}
         assert not 0 < _area(exact) == oracles.hull_area(exact)
@@ -172,7 +183,7 @@ REGIONS: dict[str, list[Region]] = {
 }
 
 
-@pytest.mark.obligation("V2", "theorems A, B, E, F: each condition is necessary")
+@pytest.mark.obligation("V2", "theorems A, B, E, F: each condition is necessary", method="ablation")
 class TestDomainConditionsAreNecessary:
     """The same for domains, bounded by directed edges."""
 
@@ -203,22 +214,29 @@ class TestDomainConditionsAreNecessary:
         assert report.verdict(Property.ADMISSIBLE) is Verdict.FAILS
 
     def test_control_nothing_is_broken(self) -> None:
+        """None: a sound mesh breaks no condition."""
         exact = oracles.rationals(KITE)
         assert not broken_of_domain(exact, HALVES, boundary_of(HALVES), [(0, 2)])
         assert verify(KITE, HALVES, segments=[(0, 2)]).ok
 
 
-@pytest.mark.obligation("V1", "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations")
+@pytest.mark.obligation(
+    "V1",
+    "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations",
+    method="enumeration",
+    control_in="TestDomainConditionsAreNecessary",
+)
 class TestDomainConditionsSuffice:
     """For sets of triangles over five points, as the domain that they bound: all conditions hold exactly if they are
     counterclockwise, admissible, over no unused point, and no visible point lies in a circle."""
 
     @pytest.mark.parametrize("name", list(CONFIGURATIONS)[:-1])  # the last is but another scale
-    def test_sets(self, name: str) -> None:
+    def test_sets(self, name: str, record_property: Record) -> None:
         points = CONFIGURATIONS[name]
         brute = BruteForce(points)
         exact = brute.points
-        for triangles in list(all_sets(brute))[1::13]:
+        some = list(all_sets(brute))[1::13]
+        for triangles in some:
             right = not broken_of_domain(exact, triangles, boundary_of(triangles))
             unused = set(range(len(points))) - {v for t in triangles for v in t}
             truth = (
@@ -234,3 +252,4 @@ class TestDomainConditionsSuffice:
                 )
             )
             assert right is truth, triangles
+        record_property("cases", len(some))

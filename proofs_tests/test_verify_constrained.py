@@ -10,6 +10,7 @@ import pytest
 from proofs_tests import domain_oracle, oracles
 from proofs_tests.domain_oracle import Cells, Line
 from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.recording import Record
 
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.verify import Property, Verdict, verify
@@ -256,24 +257,33 @@ def truth_of(case: Case) -> Truth:
     return Truth(points, (), Plain.of(theirs, segments, holes, rule))
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "sets of triangles over five points, every second, are judged against segments and domains as by visibility",
+    method="enumeration",
+)
 class TestEverySet:
-    """For every set of triangles over five points each decided verdict about segments and domains is that of brute
-    force: visibility, chains and faces by definition. Undecided is only what the enum says."""
+    """For every second set of triangles over five points each decided verdict about segments and domains is that of
+    brute force: visibility, chains and faces by definition. Undecided is only what the enum says."""
 
     @pytest.mark.parametrize(("points", "segments"), WITH_SEGMENTS.values(), ids=WITH_SEGMENTS.keys())
-    def test_segments(self, points: Points, segments: list[Pair]) -> None:
+    def test_segments(self, points: Points, segments: list[Pair], record_property: Record) -> None:
         truth = Truth(points, segments)
-        for triangles in list(all_sets(points))[::2]:
+        some = list(all_sets(points))[::2]
+        for triangles in some:
             assert not disagreements(truth, triangles), triangles
+        record_property("cases", len(some))
 
     @pytest.mark.parametrize("case", DOMAINS.values(), ids=DOMAINS.keys())
-    def test_domain(self, case: Case) -> None:
+    def test_domain(self, case: Case, record_property: Record) -> None:
         truth = truth_of(case)
-        for triangles in list(all_sets(case[0]))[::2]:
+        some = list(all_sets(case[0]))[::2]
+        for triangles in some:
             assert not disagreements(truth, triangles), triangles
+        record_property("cases", len(some))
 
     def test_control_brute_force_accepts_and_rejects_each_property(self) -> None:
+        """Sets of triangles on which each property fails, and others on which it holds."""
         seen: dict[Property, set[bool]] = {}
         for case in DOMAINS.values():
             truth = truth_of(case)
@@ -320,17 +330,23 @@ def grown(truth: Truth, random: Random) -> list[Triangle]:
     return chosen if random.random() < 0.7 else chosen[1:]
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "random domains on a small grid, where all coincides with all, are judged as by brute force",
+    method="differential",
+    control_in="proofs_tests/test_verify_domains.py::TestAblation",
+)
 class TestRandomDomains:
     """The same for random domains over points of a small grid, where everything coincides with everything."""
 
     @pytest.mark.parametrize("seed", range(60))
-    def test_verdicts(self, seed: int) -> None:
+    def test_verdicts(self, seed: int, record_property: Record) -> None:
         random = Random(seed)
         truth = random_truth(random)
         for _ in range(4):
             triangles = grown(truth, random)
             assert not disagreements(truth, triangles), (truth.given, truth.pairs, truth.domain, triangles)
+        record_property("cases", 4)
 
 
 #: Points, triangles, domain; most were found by fuzzing.

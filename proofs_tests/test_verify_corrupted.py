@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from proofs_tests import oracles
 from proofs_tests.corrupted_oracle import Area, Case, Truth
+from proofs_tests.recording import Record
 from proofs_tests.test_verify_constrained import Plain
 
 from exactmesh.errors import OptionError
@@ -299,8 +300,18 @@ def contradictions(seed: int, count: int = EACH) -> Iterator[tuple[list[str], Ca
             yield found, case
 
 
-@pytest.mark.obligation("V1", "of 10,000 corrupted meshes every verdict is that of brute force")
-@pytest.mark.obligation("V2", "each of 10,000 corrupted meshes is rejected for the right reason, or accepted rightly")
+@pytest.mark.obligation(
+    "V1",
+    "of 10,000 corrupted meshes every verdict is that of brute force",
+    method="corruption",
+    control_in="TestKnockedOut",
+)
+@pytest.mark.obligation(
+    "V2",
+    "each of 10,000 corrupted meshes is rejected for the right reason, or accepted rightly",
+    method="corruption",
+    control_in="TestKnockedOut",
+)
 class TestTenThousand:
     """Every kind of fault, in meshes of the hull and of domains, with and without segments and labels: each verdict of
     each property is that of brute force, what is left open is so for a reason that does not hold, the fault is among
@@ -309,8 +320,9 @@ class TestTenThousand:
     @pytest.mark.parametrize(
         "seed", [pytest.param(seed, marks=[pytest.mark.compiled] if seed else []) for seed in range(CHUNKS)]
     )
-    def test_verdicts(self, seed: int) -> None:
+    def test_verdicts(self, seed: int, record_property: Record) -> None:
         assert next(contradictions(seed), None) is None
+        record_property("cases", EACH)
 
     def test_there_are_ten_thousand(self) -> None:
         assert CHUNKS * EACH == 10_000
@@ -371,7 +383,11 @@ KNOCKED_OUT: list[tuple[object, str, object]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary: without it a corrupted mesh is misjudged")
+@pytest.mark.obligation(
+    "V2",
+    "without any one of its decisions the verifier misjudges one of the 10,000 corrupted meshes",
+    method="ablation",
+)
 class TestKnockedOut:
     """The negative control of the ten thousand: without any one of its decisions the verifier is caught by them."""
 
@@ -379,6 +395,7 @@ class TestKnockedOut:
     def test_control_missing_check(
         self, module: object, name: str, instead: object, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of the verifier taken out, one by one."""
         monkeypatch.setattr(module, name, instead)
         for seed in range(4):
             try:

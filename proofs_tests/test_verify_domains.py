@@ -125,7 +125,11 @@ CORRUPTIONS: list[tuple[Callable[[Mesh, Random], Mesh], Property]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "of a domain with holes, each corruption breaks the property that it should, with a witness",
+    method="corruption",
+)
 class TestHoles:
     """A polygon with many holes, some of which touch, is what it claims to be; each corruption breaks the property
     that it is meant to break, with a witness."""
@@ -145,6 +149,7 @@ class TestHoles:
     @pytest.mark.parametrize("seed", range(3))
     @pytest.mark.parametrize(("corrupt", "broken"), CORRUPTIONS, ids=[c.__name__ for c, _ in CORRUPTIONS])
     def test_control_corrupted(self, corrupt: Callable[[Mesh, Random], Mesh], broken: Property, seed: int) -> None:
+        """Corruptions of triangles, points and segments of meshes with holes."""
         report = check(corrupt(holey(seed), Random(seed)))
         assert not report.ok
         assert report.verdict(broken) is Verdict.FAILS, report
@@ -215,7 +220,9 @@ ABLATIONS: list[tuple[object, str, object]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "without any one check of segments and domains the verifier contradicts brute force", method="ablation"
+)
 class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere, so none is superfluous."""
 
@@ -223,6 +230,7 @@ class TestAblation:
     def test_control_missing_check(
         self, module: object, name: str, instead: object, monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of the verifier taken out, one by one."""
         cases = [(points, Plain.of(*rest)) for points, rest in ((case[0], case[1:]) for case in DOMAINS.values())]
         monkeypatch.setattr(module, name, instead)  # with it nothing disagrees: TestEverySet
         for points, domain in cases:
@@ -252,7 +260,11 @@ def labelled(labels: Sequence[float], regions: Sequence[tuple[float, float, floa
     return verify(SQUARE, QUARTERS, domain=with_regions, labels=labels).findings[Property.REGIONS]
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "labels are right iff they are constant on each face between segments and those of the regions' points",
+    method="enumeration",
+)
 class TestRegions:
     """Labels are constant across edges that lie on no segment, and where a region's point lies they are its attribute.
     The diagonal 0-4-2 of a square parts its four quarters into two faces."""
@@ -265,6 +277,7 @@ class TestRegions:
         assert labelled([7, 7, 3, 3], [(5, 5, 1), (1, 1, 2), (0.5, 0.5, 2)]).verdict is Verdict.HOLDS  # in no face
 
     def test_control_wrong(self) -> None:
+        """Labels that differ within a face, or are not the point's."""
         differ = labelled([7, 3, 3, 3], [])
         assert [violation.kind for violation in differ.violations] == [Kind.LABELS_DIFFER]
         assert sorted(differ.violations[0].triangles) == [0, 1]
@@ -296,7 +309,12 @@ class TestRegions:
         assert missing.findings[Property.REGIONS].because == (Property.SEGMENTS_PRESENT,)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / constrained / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "segments through vertices of large degree, found by angle, are judged as by brute force",
+    method="enumeration",
+    control_in="TestAblation",
+)
 class TestBundles:
     """Chains through vertices of large degree are found by angle: the verdicts are the same."""
 

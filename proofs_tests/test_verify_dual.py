@@ -169,7 +169,9 @@ def dual_finding(points: npt.ArrayLike, dual: Dual) -> Finding:
     return verify(mesh.points, mesh.triangles, dual=dual).findings[Property.VORONOI_DUAL]
 
 
-@pytest.mark.obligation("V1", "a diagram is accepted iff its ridges are those of brute force, to the next doubles")
+@pytest.mark.obligation(
+    "V1", "a diagram is accepted iff its ridges are those of brute force, to the next doubles", method="corruption"
+)
 class TestDual:
     """Right diagrams and corrupted ones: the verdict is that of a comparison with all bisectors, in fractions."""
 
@@ -191,6 +193,7 @@ class TestDual:
             assert (finding.verdict is Verdict.FAILS) is (finding.count > 0)
 
     def test_control_both_verdicts_occur(self) -> None:
+        """Vertices moved or tilted, ridges dropped, doubled, rewired, exchanged, turned."""
         seen = set()
         for seed in range(48):
             points, random = sites_of(seed), Random(seed)
@@ -263,7 +266,9 @@ class TestDual:
         assert not verify(mesh.points, mesh.triangles, dual=claimed).ok
 
 
-@pytest.mark.obligation("V1", "a diagram is claimed where it is given; without Delaunay nothing is said of it")
+@pytest.mark.obligation(
+    "V1", "a diagram is claimed where it is given; without Delaunay nothing is said of it", method="named cases"
+)
 class TestClaims:
     """What is no diagram is refused."""
 
@@ -308,8 +313,13 @@ class TestClaims:
         assert (violation.kind, violation.magnitude) == (Kind.WRONG_CENTRE, Fraction(1, 4))
         assert finding.severity is Severity.WRONG
 
+    def test_control_good(self) -> None:
+        """None: a diagram in the same form is taken."""
+        points = self.KITE[0]
+        assert verify(points, [(0, 1, 3), (1, 2, 3)], dual=voronoi(points)).ok
 
-@pytest.mark.obligation("V2", "each condition about diagrams is necessary")
+
+@pytest.mark.obligation("V2", "each condition about diagrams is necessary", method="ablation")
 class TestAblation:
     """A diagram that each check refuses passes when that check is taken out."""
 
@@ -334,6 +344,7 @@ class TestAblation:
         corrupt: Callable[[SimpleNamespace], None],
         monkeypatch: pytest.MonkeyPatch,
     ) -> None:
+        """The checks of vertices and of directions taken out."""
         assert not self._report(corrupt).ok
         monkeypatch.setattr(duality.Check, name, replacement)
         assert self._report(corrupt).ok

@@ -13,6 +13,7 @@ from proofs_tests.test_verify import CONFIGURATIONS, STAR, BruteForce, all_sets,
 from scipy.spatial import Delaunay
 
 from exactkernel import Sign
+from exactmesh import delaunay
 from exactmesh.verify import Finding, Property, Severity, Verdict, deciding, verify
 
 Points = npt.NDArray[np.float64]
@@ -131,7 +132,9 @@ CORRUPTIONS: list[tuple[Callable[[Mesh, Random], Mesh], Property]] = [
 ]
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "of a sound mesh by another mesher, each corruption breaks the property that it should", method="corruption"
+)
 class TestCorruptedMeshes:
     """A sound mesh of another mesher has every claimed property; each corruption breaks the one that it is
     meant to break, and the verdicts on the corrupted mesh are those of brute force."""
@@ -150,7 +153,8 @@ class TestCorruptedMeshes:
 
     @pytest.mark.parametrize("seed", range(3))
     @pytest.mark.parametrize(("corrupt", "broken"), CORRUPTIONS, ids=[c.__name__ for c, _ in CORRUPTIONS])
-    def test_corrupted(self, corrupt: Callable[[Mesh, Random], Mesh], broken: Property, seed: int) -> None:
+    def test_control_corrupted(self, corrupt: Callable[[Mesh, Random], Mesh], broken: Property, seed: int) -> None:
+        """Points moved, triangles lost, doubled, turned round, and more, one at a time."""
         points, triangles = corrupt(sound(seed, 16), Random(seed))
         report = verify(points, triangles)
         assert not report.ok
@@ -159,7 +163,12 @@ class TestCorruptedMeshes:
         assert not disagreements(BruteForce([(x, y) for x, y in points.tolist()]), points.tolist(), rows)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "any part of an admissible mesh is admissible; with one more triangle it is what brute force says",
+    method="differential",
+    control_in="TestAblation",
+)
 class TestParts:
     """Any part of an admissible set is admissible, however ragged its boundary; with one more triangle it is
     what brute force says. This is where the plane sweep decides."""
@@ -217,19 +226,23 @@ def holds(*_: object) -> Finding:
     return HOLDING
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2", "without any one check of triangles and edges the verifier contradicts brute force", method="ablation"
+)
 class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere: none is superfluous, and
     the comparison with brute force would notice its loss."""
 
     @pytest.mark.parametrize("check", ["check_zero_area", "check_overlap", "check_sweep", "check_hull", "check_fans"])
-    def test_missing_check(self, check: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_control_missing_check(self, check: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The checks of triangles and edges taken out, one by one."""
         brutes = [(BruteForce(points), points) for points in list(CONFIGURATIONS.values())[:6]]
         cases = [(brute, points, rows) for brute, points in brutes for rows in list(all_sets(brute))[::5]]
         monkeypatch.setattr(deciding, check, holds)  # with it nothing disagrees: TestEverySetOfFivePoints
         assert any(disagreements(*case) for case in cases)
 
-    def test_without_simplicity_the_double_cover_passes(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_control_without_simplicity_the_double_cover_passes(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The check that the boundary is simple taken out."""
         triangles = [(0, 1 + i, 1 + (i + 1) % 5) for i in range(5)]
         claims = [Property.ORIENTATION, Property.EDGE_MANIFOLD, Property.VERTEX_MANIFOLD, Property.ADMISSIBLE]
         assert not verify(STAR, triangles, claims=claims).ok
@@ -266,7 +279,11 @@ CORPUS: dict[str, Points] = {
 }
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "wrong meshes of scipy and GEOS are refused, with exact witnesses; wrong is kept apart from rounding",
+    method="named cases",
+)
 class TestKnownFailures:
     """Wrong answers of other meshers, which they do not report, are refused with a witness that is exactly
     right."""
@@ -324,3 +341,9 @@ class TestKnownFailures:
             small += violation.severity is Severity.ROUNDING
             assert ("rounding-sized" in violation.message) is (violation.severity is Severity.ROUNDING)
         assert small > 0
+
+    @pytest.mark.parametrize("points", CORPUS.values(), ids=CORPUS.keys())
+    def test_control_right(self, points: Points) -> None:
+        """None: what exactmesh says of the same points is accepted."""
+        mesh = delaunay(points)
+        assert verify(mesh.points, mesh.triangles).ok

@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 from proofs_tests import cells_oracle, domain_oracle, oracles
 from proofs_tests.cells_oracle import Cell
+from proofs_tests.recording import Record
 from proofs_tests.test_kernel_compiled import in_a_child
 
 from exactkernel import ShapeError, Sign
@@ -110,16 +111,22 @@ def some_sets(points: Points, triples: int) -> Iterator[tuple[Cell, ...]]:
         yield tuple(random.sample(sound, 3))
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "every small set of triangles and quadrilaterals over five points is judged as by brute force",
+    method="enumeration",
+)
 class TestEverySmallSet:
     """For every set of two triangles and quadrilaterals over five points, and some of three, each verdict is that of
     brute force on polygons."""
 
     @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
-    def test_verdicts(self, points: Points) -> None:
-        for i, chosen in enumerate(some_sets(points, 60)):
+    def test_verdicts(self, points: Points, record_property: Record) -> None:
+        some = list(some_sets(points, 60))
+        for i, chosen in enumerate(some):
             orientation = Orientation.ANY if i % 2 else Orientation.CCW
             assert not disagreements(points, chosen, orientation), (chosen, orientation)
+        record_property("cases", len(some))
 
     @pytest.mark.parametrize("name", ["two inside", "a point inside an edge", "the centre of a square"])
     def test_cutting_convex_ones_changes_nothing(self, name: str) -> None:
@@ -144,6 +151,8 @@ class TestEverySmallSet:
         assert all(found == {True, False} for property_, found in seen.items() if property_ not in ALWAYS), seen
 
     def test_control_three_left_turns_are_not_convex(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Quadrilaterals with one right turn taken for convex."""
+
         def lenient(turns: SignArray) -> npt.NDArray[np.bool_]:
             found: npt.NDArray[np.bool_] = cells.orientation_of_quads(turns) != 0
             return found
@@ -167,7 +176,11 @@ def tilings() -> Iterator[tuple[Cell, ...]]:
         yield tuple(cell for part in parts for cell in part)
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1",
+    "in tilings of a grid by squares and halves, segments, domains and labels are judged rightly",
+    method="enumeration",
+)
 class TestTilingsOfAGrid:
     """Squares, whole or cut: they are admissible; a segment is there if it is a chain of sides of cells, a diagonal of
     a quadrilateral is none; the domain is covered if every square is; labels change across segments only."""
@@ -338,7 +351,11 @@ CORRUPTIONS: list[Corruption] = [
 
 
 @pytest.mark.bounds
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "of a mesh with quadrilaterals, each corruption breaks the property that it should; the witness names it",
+    method="corruption",
+)
 class TestCorrupted:
     """A mesh of triangles and quadrilaterals is what it claims to be; each corruption breaks the property that it is
     meant to break, and the witness names the cells that were touched."""
@@ -358,9 +375,10 @@ class TestCorrupted:
         ("corrupt", "property_", "kinds"), CORRUPTIONS, ids=[f"{f.__name__}-{p}" for f, p, _ in CORRUPTIONS]
     )
     @pytest.mark.parametrize("seed", range(3))
-    def test_rejected(
+    def test_control_rejected(
         self, corrupt: Callable[[Mesh, Random], Mesh], property_: Property, kinds: set[Kind], seed: int
     ) -> None:
+        """Points moved, cells lost, doubled, turned round, folded, and more, one at a time."""
         points, triangles, quads = corrupt(mixed_grid(seed), Random(seed))
         report = verify(points, triangles, quads=quads)
         finding = report.findings[property_]
@@ -384,7 +402,9 @@ def digests() -> list[str]:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "the verifier says the same of quadrilaterals compiled and interpreted")
+@pytest.mark.obligation(
+    "J1", "the verifier says the same of quadrilaterals compiled and interpreted", method="bit for bit"
+)
 class TestLanes:
     """Reports are the same to the letter, the stages that decided included."""
 
@@ -393,6 +413,7 @@ class TestLanes:
         assert in_a_child("-c", code, NUMBA_DISABLE_JIT="1").strip() == str(digests())
 
     def test_control_digests_differ(self) -> None:
+        """Other meshes: most digests differ."""
         assert len(set(digests())) > len(digests()) / 2
 
 

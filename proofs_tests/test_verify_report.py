@@ -58,7 +58,9 @@ def frozen(array: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     return array
 
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+@pytest.mark.obligation(
+    "V1", "the verdict depends on the values alone: not on dtype, layout, byte order or scale", method="named cases"
+)
 class TestInput:
     """The verdict depends on the values alone: not on dtype, layout, byte order, or who owns the array."""
 
@@ -142,8 +144,16 @@ class TestInput:
         assert report.verdict(Property.ADMISSIBLE) is report.verdict(Property.VERTEX_MANIFOLD) is Verdict.HOLDS
         assert verify(points, [*fan, fan[7]]).verdict(Property.EDGE_MANIFOLD) is Verdict.FAILS
 
+    def test_control_another_value(self) -> None:
+        """A point moved across an edge, a corner exchanged: the verdict is another."""
+        assert verify(SQUARE, HALVES).ok
+        assert not verify([*SQUARE[:2], (-1.0, -1.0), SQUARE[3]], HALVES).ok
+        assert not verify(SQUARE, [HALVES[0], HALVES[0]]).ok
 
-@pytest.mark.obligation("V1", "the verifier accepts exactly the admissible / Delaunay / ... meshes")
+
+@pytest.mark.obligation(
+    "V1", "a point that is not finite and an index out of range are findings that name them", method="named cases"
+)
 class TestUnreadable:
     """A point that is not finite and an index out of range are findings, named; what rests on them is
     undecided."""
@@ -192,6 +202,11 @@ class TestUnreadable:
     def test_both(self) -> None:
         report = verify([(np.nan, 0.0)], [(0, 1, 2)])
         assert report.findings[Property.DISTINCT_POINTS].because == (Property.FINITE, Property.INDICES)
+
+    def test_control_readable(self) -> None:
+        """None: the same mesh, finite and in range, has neither finding."""
+        report = verify(SQUARE, HALVES)
+        assert report.verdict(Property.FINITE) is report.verdict(Property.INDICES) is Verdict.HOLDS
 
 
 class TestReport:

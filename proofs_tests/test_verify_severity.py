@@ -121,7 +121,9 @@ def checked(finding: Finding) -> Finding:
 SCALES = (1.0, 2.0**-70, 2.0**-300, 2.0**330)
 
 
-@pytest.mark.obligation("V1", "the number of rounding-sized violations is that of the definition in fractions")
+@pytest.mark.obligation(
+    "V1", "the number of rounding-sized violations is that of the definition in fractions", method="differential"
+)
 class TestCounts:
     """A violation is rounding-sized iff its determinant is at most the filter's constant times its permanent: counted
     over all violations, at every scale, and the same for each witness."""
@@ -135,6 +137,7 @@ class TestCounts:
         assert (finding.count, finding.rounding) == small_circles(points, triangles)
 
     def test_control_both_sizes_occur(self) -> None:
+        """Violations of both sizes."""
         points = np.concatenate([perturbed_grid(0), [(0.3, 0.2), (40.0, 3.0)]])
         count, small = small_circles(points, flipped(points, 1))
         assert 0 < small < count
@@ -203,6 +206,7 @@ class TestCounts:
         assert rounding() == before
 
     def test_control_a_pass_that_guesses(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Every violation taken for rounding-sized."""
         points = perturbed_grid(3)
         triangles = flipped(points, 3)
         monkeypatch.setattr(grading, "grade_circles", lambda *a: a[-2].fill(severity.ROUNDING_SIZED))
@@ -225,7 +229,7 @@ def many() -> tuple[FloatArray, list[Triangle]]:
     return np.array([*points, *kite]), [*triangles, (k, k + 1, k + 2), (k, k + 2, k + 3)]
 
 
-@pytest.mark.obligation("V1", "of many violations the wrong ones are told, whatever their place")
+@pytest.mark.obligation("V1", "of many violations the wrong ones are told, whatever their place", method="named cases")
 class TestRanking:
     """The witnesses of a finding are the wrong violations before the rounding-sized, the largest first."""
 
@@ -247,6 +251,7 @@ class TestRanking:
         assert degrees == sorted(degrees, key=lambda x: x or 0.0)
 
     def test_control_in_order_of_place(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Witnesses in the order of their place."""
         monkeypatch.setattr(grading, "ranked", lambda *_: Ranking(np.arange(WITNESSES), 0))
         told = verify(*many()).findings[Property.DELAUNAY].violations
         assert all({*violation.vertices} != {*range(1024, 1028)} for violation in told)

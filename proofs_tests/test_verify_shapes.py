@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from proofs_tests import gabriel_oracle, oracles, shape_oracle
 from proofs_tests.oracles import RationalPoint, Triangle
+from proofs_tests.recording import Record
 from proofs_tests.test_verify import CONFIGURATIONS, all_sets
 
 from exactkernel import BoundError, ShapeError
@@ -100,13 +101,15 @@ def shape_meets(a: RationalPoint, b: RationalPoint, c: RationalPoint, d: Rationa
     return any(oracles.on_segment(p, *line) for p, line in inner)
 
 
-@pytest.mark.obligation("V1", "the verifier decides Gabriel edges and circumcentres as brute force does")
+@pytest.mark.obligation(
+    "V1", "the verifier decides Gabriel edges and circumcentres as brute force does", method="enumeration"
+)
 class TestCircles:
-    """For every set of triangles over five points, with and without segments, and for meshes with holes: the verdicts
-    are those of the definitions, visibility included."""
+    """For sets of triangles over five points, one in eleven, with and without segments, and for meshes with holes: the
+    verdicts are those of the definitions, visibility included."""
 
     @pytest.mark.parametrize("name", CONFIGURATIONS)
-    def test_every_set(self, name: str) -> None:
+    def test_every_set(self, name: str, record_property: Record) -> None:
         points = CONFIGURATIONS[name]
         brute: list[RationalPoint] = oracles.rationals(points)
 
@@ -115,11 +118,14 @@ class TestCircles:
 
         stub = Brute()
         stub.points = brute  # type: ignore[attr-defined]  # made for this test
+        tried = 0
         for i, triangles in enumerate(all_sets(stub)):  # type: ignore[arg-type]  # as above
+            tried += (i % 11 == 0) + (i % 29 == 0)
             if i % 11 == 0:
                 assert not circle_faults(points, triangles, None), triangles
             if i % 29 == 0:
                 assert not circle_faults(points, triangles, [(0, 1), (1, 2)]), triangles
+        record_property("cases", tried)
 
     @pytest.mark.parametrize("seed", range(120))
     def test_meshes(self, seed: int) -> None:
@@ -130,6 +136,7 @@ class TestCircles:
         assert not circle_faults(far, triangles, segments)
 
     def test_control_brute_force_tells_the_properties_apart(self) -> None:
+        """Meshes that have one of the properties and not another."""
         seen: set[tuple[bool, ...]] = set()
         for seed in range(120):
             points, triangles, segments = random_mesh(Random(seed))
@@ -176,7 +183,12 @@ SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
 TWO = [(0, 1, 2), (0, 2, 3)]
 
 
-@pytest.mark.obligation("V1", "bounds on angles and areas are decided as in fractions, with witnesses")
+@pytest.mark.obligation(
+    "V1",
+    "bounds on angles and areas are decided as in fractions, with witnesses",
+    method="differential",
+    control_in="TestAblation",
+)
 class TestBounds:
     """The violations are the triangles that the law of cosines and the shoelace formula find, in any orientation."""
 
@@ -243,7 +255,7 @@ class TestBounds:
         assert verify(SQUARE, TWO, min_angle=45, max_angle=90, max_area=2).ok
 
 
-@pytest.mark.obligation("V1", "bounds are claims; bad ones are typed errors")
+@pytest.mark.obligation("V1", "bounds are claims; bad ones are typed errors", method="named cases")
 class TestClaims:
     """What is given is claimed; what is claimed without being given is refused, and so are bounds that are none."""
 
@@ -292,6 +304,14 @@ class TestClaims:
             assert report.findings[property_].violations[0].kind is Kind.ZERO_AREA
         assert report.verdict(Property.MAX_AREA) is Verdict.HOLDS
 
+    def test_control_good_bounds(self) -> None:
+        """None: bounds at the ends of their ranges are taken."""
+        assert verify(KITE, HALVES, min_angle=0, max_angle=180, max_area=math.inf).claims[-3:] == (
+            Property.MIN_ANGLE,
+            Property.MAX_ANGLE,
+            Property.MAX_AREA,
+        )
+
 
 def holds(*_: object) -> Finding:
     return Finding(Verdict.HOLDS)
@@ -306,7 +326,7 @@ def conforming(**changed: object) -> Report:
     return verify(mesh.points, mesh.triangles, domain=domain, claims=CONFORMING_TRIANGULATION, **bounds)  # type: ignore[call-overload, no-any-return]  # bounds by name
 
 
-@pytest.mark.obligation("V2", "each condition about shapes is necessary")
+@pytest.mark.obligation("V2", "each condition about shapes is necessary", method="ablation")
 class TestAblation:
     """A mesh that each check refuses passes when that check is taken out."""
 
@@ -323,6 +343,7 @@ class TestAblation:
     def test_control_missing_check(
         self, name: str, property_: Property, bounds: dict[str, object], monkeypatch: pytest.MonkeyPatch
     ) -> None:
+        """The checks of circles, angles and areas taken out, one by one."""
         assert conforming(**bounds).verdict(property_) is Verdict.FAILS
         monkeypatch.setattr(deciding, name, holds)
         assert conforming(**bounds).verdict(property_) is Verdict.HOLDS

@@ -21,7 +21,12 @@ SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
 TWO = [(0, 1, 2), (0, 2, 3)]
 
 
-@pytest.mark.obligation("V1", "a size field is kept iff no edge is longer than its size, in fractions")
+@pytest.mark.obligation(
+    "V1",
+    "a size field is kept iff no edge is longer than its size, in fractions",
+    method="differential",
+    control_in="TestAblation",
+)
 class TestSizes:
     """The violations are the triangles that Pythagoras finds, and as many of them are rounding-sized as by definition,
     at any scale, for degenerate triangles as well."""
@@ -117,11 +122,12 @@ class TestSizes:
         assert unreadable.verdict(Property.MAX_LENGTH) is Verdict.UNDECIDED
 
 
-@pytest.mark.obligation("V2", "each condition about sizes is necessary")
+@pytest.mark.obligation("V2", "each condition about sizes is necessary", method="ablation")
 class TestAblation:
     """What the check refuses passes without it; what double-doubles leave open, rationals decide likewise."""
 
     def test_control_missing_check(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The check of lengths taken out."""
         assert not verify(SQUARE, TWO, size=2.5).ok
         monkeypatch.setattr(deciding, "check_lengths", lambda *_: Finding(Verdict.HOLDS))
         assert verify(SQUARE, TWO, size=2.5).ok

@@ -79,7 +79,9 @@ def cases(seed: int) -> tuple[FloatArray, list[Triangle], FloatArray, list[Pair]
     return points, triangles, lines, ends
 
 
-@pytest.mark.obligation("V1", "a displaced segment is the chain of edges that stays nearest, by enumeration of all")
+@pytest.mark.obligation(
+    "V1", "a displaced segment is the chain of edges that stays nearest, by enumeration of all", method="differential"
+)
 class TestChains:
     """Of all chains that lead from end to end, ever forward, the verifier takes the one that enumeration finds best, in
     the window of the predicates and outside of it."""
@@ -139,7 +141,9 @@ class TestChains:
         assert not chains_of(points, triangles, np.array([[(0.0, 0.0), (float(n), 0.0)]]), [(0, n)], 2.0**-41)
 
 
-@pytest.mark.obligation("V1", "the nearest corner is that of brute force in fractions, ties by index")
+@pytest.mark.obligation(
+    "V1", "the nearest corner is that of brute force in fractions, ties by index", method="differential"
+)
 class TestNearest:
     """For points anywhere, at any scale, coincident or on a circle."""
 
@@ -170,6 +174,16 @@ class TestNearest:
         points = np.array(circle[::-1] * 2)
         assert nearest_corners(points, np.arange(2, 12), np.zeros((1, 2))).tolist() == [2]
 
+    def test_control_in_doubles(self) -> None:
+        """Distances in doubles: they are infinite or zero for all, and the first corner is taken."""
+        for scale in (1e200, 1e-200):
+            points = np.array([(3.0, 3.0), (1.0, 1.0), (2.0, 0.0)]) * scale
+            distances = (points**2).sum(axis=1)
+            brute = within_oracle.nearest(oracles.rationals(points.tolist()), [0, 1, 2], (Fraction(0), Fraction(0)))
+            assert nearest_corners(points, np.arange(3), np.zeros((1, 2))).tolist() == [brute] == [1]
+            with np.errstate(over="ignore"):
+                assert distances.argmin() != brute
+
 
 def star_polygon(seed: int, n: int = 9) -> tuple[Points, list[Pair]]:
     """A polygon with slanted sides, and a pentagon inside."""
@@ -187,7 +201,12 @@ def slanted(seed: int) -> PSLG:
     return PSLG(points, rings, holes=[(0.0, 0.0)])
 
 
-@pytest.mark.obligation("V1", "refined meshes cover their domain within exactly the distance that refinement reports")
+@pytest.mark.obligation(
+    "V1",
+    "refined meshes cover their domain within exactly the distance that refinement reports",
+    method="differential",
+    control_in="TestAblation",
+)
 class TestRefined:
     """Steiner points on slanted segments are rounded: strictly the domain is missed; within any distance it is covered,
     and the distance that is found is the displacement; within the double below it, it is missed again."""
@@ -263,7 +282,12 @@ class TestRefined:
         assert not verify(mesh["vertices"], mesh["triangles"], domain=domain, within=below, claims=COVER).ok
 
 
-@pytest.mark.obligation("V1", "corners that a file format rounded are found, and their distance is exact")
+@pytest.mark.obligation(
+    "V1",
+    "corners that a file format rounded are found, and their distance is exact",
+    method="differential",
+    control_in="TestAblation",
+)
 class TestMoved:
     """Coordinates rounded to 32 bits: the domain is covered within the largest distance of a corner from its point or
     of a vertex from its segment, as brute force in fractions measures it, and not within less."""
@@ -333,7 +357,9 @@ def damned(within: float | None) -> Report:
     return verify(points, ring, domain=domain, within=within, claims=COVER)
 
 
-@pytest.mark.obligation("V1", "what lies outside of the domain may be missing, within any distance, and moves nothing")
+@pytest.mark.obligation(
+    "V1", "what lies outside of the domain may be missing, within any distance, and moves nothing", method="named cases"
+)
 class TestLeftOut:
     """A segment in a hole is left where it is, although chains along the shore join its ends."""
 
@@ -389,7 +415,9 @@ def strict_of_displaced(points: Points, triangles: list[Triangle], domain: PSLG)
     return report.ok, squared
 
 
-@pytest.mark.obligation("V1", "within a distance the domain is covered iff the displaced domain is, strictly")
+@pytest.mark.obligation(
+    "V1", "within a distance the domain is covered iff the displaced domain is, strictly", method="differential"
+)
 class TestDisplaced:
     """Displace each segment along its best chain, found by enumeration, and verify strictly: the verdict is the same,
     and so is the distance. What is left out may only make the distance smaller."""
@@ -412,6 +440,7 @@ class TestDisplaced:
                 assert report.distance == 0
 
     def test_control_all_sorts_occur(self) -> None:
+        """Displacements that are too far, and others that are not."""
         seen = set()
         for seed in range(40):
             for points, triangles, domain, within in displacements(seed):
@@ -421,7 +450,7 @@ class TestDisplaced:
         assert {(True, True, True), (False, False, False), (True, True, False)} <= seen
 
 
-@pytest.mark.obligation("V1", "a distance is 0 or more, and needs a domain")
+@pytest.mark.obligation("V1", "a distance is 0 or more, and needs a domain", method="named cases")
 class TestArguments:
     """What is no distance is refused; without one nothing changes; the report says what was found."""
 
@@ -466,8 +495,13 @@ class TestArguments:
         report = verify(self.TWO[0], [(0, 1, 2), (0, 1, 2)], domain=self.HALF, within=1)
         assert report.findings[Property.COVERS_DOMAIN].because == (Property.ADMISSIBLE,)
 
+    def test_control_good(self) -> None:
+        """None: distances at the ends of the range are taken."""
+        assert verify(*self.TWO, domain=self.HALF, within=0).ok
+        assert verify(*self.TWO, domain=self.HALF, within=1e308).ok
 
-@pytest.mark.obligation("V2", "each condition of coverage within a distance is necessary")
+
+@pytest.mark.obligation("V2", "each condition of coverage within a distance is necessary", method="ablation")
 class TestAblation:
     """What each check refuses passes when the check is taken out."""
 
@@ -479,11 +513,13 @@ class TestAblation:
         return verify(mesh.points, mesh.triangles, domain=domain, within=math.nextafter(distance, 0.0), claims=COVER)
 
     def test_control_the_distance_of_chains(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The distance of chains taken for small."""
         assert not self._below().ok
         monkeypatch.setattr(displaced, "_within", lambda *a: a[3])
         assert self._below().ok
 
     def test_control_the_distance_of_corners(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The distance of corners taken for small."""
         points = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.25)]
         domain = PSLG([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0)], [(0, 1), (1, 2), (2, 0)])
 

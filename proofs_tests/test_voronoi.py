@@ -60,7 +60,9 @@ def naive_centres(mesh: Triangulation) -> FloatArray:
     return found
 
 
-@pytest.mark.obligation("D1", "circumcentres are rounded once: each coordinate is the nearest double, ties to even")
+@pytest.mark.obligation(
+    "D1", "circumcentres are rounded once: each coordinate is the nearest double, ties to even", method="property-based"
+)
 class TestCircumcentres:
     """Each coordinate is the double nearest to the exact one, for any finite input; beyond the doubles, an infinity."""
 
@@ -99,11 +101,13 @@ class TestCircumcentres:
         assert asked
 
     def test_control_the_formula_in_doubles_is_not_that_good(self) -> None:
+        """The formula in plain doubles."""
         for name in ("uniform", "circle"):
             mesh = delaunay(inputs()[name])
             assert wrong_centres(mesh, naive_centres(mesh))
 
     def test_control_one_unit_is_seen(self) -> None:
+        """One centre moved by one unit in the last place."""
         mesh = delaunay(inputs()["uniform"])
         found = circumcentres(mesh)
         found[5, 1] = np.nextafter(found[5, 1], 2.0)
@@ -129,7 +133,9 @@ def dual_faults(mesh: Triangulation, duals: IntArray, directions: FloatArray) ->
     return faults
 
 
-@pytest.mark.obligation("D2", "edge i is Voronoi edge i turned counterclockwise; triangle j is centre j")
+@pytest.mark.obligation(
+    "D2", "edge i is Voronoi edge i turned counterclockwise; triangle j is centre j", method="property-based"
+)
 class TestDualEdges:
     """Row i has the triangles on the left and on the right of edge i; rays point straight away from the hull."""
 
@@ -141,6 +147,7 @@ class TestDualEdges:
         assert dual_faults(mesh, *dual_edges(mesh)) == []
 
     def test_control(self) -> None:
+        """Sides exchanged, rays turned, rows shifted."""
         mesh = delaunay([*SQUARE, (1, 1)])
         duals, directions = dual_edges(mesh)
         assert dual_faults(mesh, duals[:, ::-1], directions)
@@ -212,7 +219,9 @@ def structure_faults(diagram: Voronoi) -> list[str]:
 
 
 @pytest.mark.obligation(
-    "D3", "each Voronoi cell is what is nearest to its site, exactly; cocircular points have one vertex"
+    "D3",
+    "each Voronoi cell is what is nearest to its site, exactly; cocircular points have one vertex",
+    method="property-based",
 )
 class TestCells:
     """The cells are those of brute force in fractions; each ridge is in the two cells of its sites, in opposite
@@ -263,6 +272,7 @@ class TestCells:
         assert sorted(diagram.areas.tolist()) == [1.0] * 12 + [np.inf] * 18
 
     def test_controls_corrupted_diagrams(self) -> None:
+        """A cell turned round, ends and rows exchanged, rays without direction."""
         diagram = voronoi([(0, 0), (4, 0), (4, 4), (0, 4), (2, 2), (1, 3), (9, 7)])
         assert not cell_faults(diagram)
         assert not structure_faults(diagram)

@@ -79,7 +79,11 @@ def clip_faults(cells: Cells) -> list[str]:
     return faults
 
 
-@pytest.mark.obligation("D4", "clipped cells are exactly cell and window; their areas add up to the window's, exactly")
+@pytest.mark.obligation(
+    "D4",
+    "clipped cells are exactly cell and window; their areas add up to the window's, exactly",
+    method="property-based",
+)
 class TestWindow:
     """The polygons are those of brute force in fractions, each corner rounded once, each edge with its neighbour; the
     window may pass through sites and vertices and along ridges."""
@@ -117,6 +121,7 @@ class TestWindow:
         assert (cells.neighbors[cells.offsets[0] : cells.offsets[1]] < 0).sum() >= 12
 
     def test_controls(self) -> None:
+        """A cell lost, neighbours, sites and sources shifted, a corner moved by one unit in the last place."""
         cells = cells_of(voronoi([(0, 0), (3, 1), (1, 3), (4, 4), (2, 2)], clip=(-1, -1, 5, 5)))
         assert clip_faults(cells) == []
         assert "areas do not add up" in clip_faults(replace(cells, sites=cells.sites[:-1], offsets=cells.offsets[:-1]))
@@ -227,7 +232,9 @@ def domain_faults(mesh: Triangulation, cells: Cells) -> list[str]:
     return faults
 
 
-@pytest.mark.obligation("D5", "in a conforming domain every circumcentre is inside, and the cells cover it exactly")
+@pytest.mark.obligation(
+    "D5", "in a conforming domain every circumcentre is inside, and the cells cover it exactly", method="property-based"
+)
 class TestDomain:
     """The cells of a boundary conforming triangulation tile its domain, exactly; others are refused by name."""
 
@@ -279,6 +286,7 @@ class TestDomain:
             voronoi(mesh, clip="domain")
 
     def test_controls(self) -> None:
+        """A cell lost, sites shifted, sources exchanged."""
         mesh = right_angled([(0, 0), (1, 0), (0, 1)])
         cells = cells_of(voronoi(mesh, clip="domain"))
         fewer = replace(cells, sites=cells.sites[:-1], offsets=cells.offsets[:-1])

@@ -54,7 +54,9 @@ def largest_error(mesh: Triangulation, queries: FloatArray, found: NaturalNeighb
     return worst
 
 
-@pytest.mark.obligation("D6", "Sibson's coordinates are the parts of the stolen cell, to 50 bits")
+@pytest.mark.obligation(
+    "D6", "Sibson's coordinates are the parts of the stolen cell, to 50 bits", method="property-based"
+)
 class TestCoordinates:
     """The coordinates are the areas that brute force in fractions finds; they add up to 1, and to the point."""
 
@@ -100,6 +102,7 @@ class TestCoordinates:
             assert all(abs(float(weight) - row(found, i)[v]) < 1e-15 for v, weight in exact.items())
 
     def test_controls(self) -> None:
+        """Weights exchanged, and weights that are all the same."""
         mesh = delaunay([(0, 0), (6, 0), (6, 6), (0, 6), (2, 3), (4, 2)])
         queries = np.array([(3.0, 3.0), (1.0, 2.0)])
         found = natural_neighbors(mesh, queries)
@@ -119,7 +122,9 @@ def deviation(points: FloatArray, values: FloatArray, plane: FloatArray, queries
 
 
 @pytest.mark.obligation(
-    "D7", "the interpolant takes the data, reproduces linear functions, stays within its neighbours"
+    "D7",
+    "the interpolant takes the data, reproduces linear functions, stays within its neighbours",
+    method="property-based",
 )
 class TestInterpolation:
     """It takes the values at the sites, is linear for linear values, continuous, and never beyond the values around."""
@@ -132,6 +137,7 @@ class TestInterpolation:
         assert deviation(points, points @ plane + 1.0, plane, queries.sum(axis=1)) < 1e-13
 
     def test_control_another_interpolant_is_not_linear(self) -> None:
+        """Data that are not linear."""
         points, plane = inputs()["uniform"], np.array([3.0, -2.0])
         assert deviation(points, (points**2) @ plane + 1.0, plane, points[:50] * 0.9) > 1e-3
 
@@ -195,7 +201,9 @@ class TestInterpolation:
                 interpolate(sites, values, at)  # type: ignore[arg-type]  # bad on purpose
 
 
-@pytest.mark.obligation("D8", "Lloyd's energy never grows; it rests where every site is the centroid of its cell")
+@pytest.mark.obligation(
+    "D8", "Lloyd's energy never grows; it rests where every site is the centroid of its cell", method="property-based"
+)
 class TestLloyd:
     """The energy falls from step to step, points stay in the window, and a centroidal diagram stays as it is."""
 
@@ -223,6 +231,7 @@ class TestLloyd:
         assert relaxed.energies[-1] < 0.7 * relaxed.energies[0]
 
     def test_control_other_moves_raise_the_energy(self) -> None:
+        """Points moved away from their centroids."""
         points = np.random.default_rng(0).random((30, 2))
         relaxed = lloyd(points, clip=(0, 0, 1, 1), iterations=3)
         mirrored = np.clip(2 * points - relaxed.points, 0.0, 1.0)
@@ -247,7 +256,9 @@ class TestLloyd:
 
 
 @pytest.mark.compiled
-@pytest.mark.obligation("J1", "Voronoi diagrams, clipping, interpolation and relaxation: compiled equals interpreted")
+@pytest.mark.obligation(
+    "J1", "Voronoi diagrams, clipping, interpolation and relaxation: compiled equals interpreted", method="bit for bit"
+)
 class TestLanes:
     """Diagrams, clipped cells, natural neighbours and relaxation have the same bits compiled and interpreted."""
 
@@ -258,6 +269,7 @@ class TestLanes:
         assert in_a_child("-m", "proofs_tests.voronoi_digest", NUMBA_DISABLE_JIT="1") == here
 
     def test_control(self) -> None:
+        """One coordinate moved by one unit in the last place."""
         from proofs_tests import voronoi_digest
 
         points = inputs()["uniform"]

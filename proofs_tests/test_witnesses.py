@@ -107,7 +107,11 @@ def random_cells(random: Random) -> tuple[Points, Cells, Cells]:
     return points, triangles, quads
 
 
-@pytest.mark.obligation("V2", "each condition of the verifier is necessary")
+@pytest.mark.obligation(
+    "V2",
+    "a witness is minimal: its cells violate the property by themselves, and without any one of them do not",
+    method="differential",
+)
 class TestMinimal:
     """Law: for a local property the cells that a violation names violate it by themselves, in the same way, and without
     any one of them nothing is violated."""

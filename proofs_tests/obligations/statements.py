@@ -1,0 +1,78 @@
+"""What each obligation says: the theorems, by family. What a class shows of one is said by its marker."""
+
+from types import MappingProxyType
+
+__all__ = ["CORE", "FAMILIES", "STATEMENTS", "family"]
+
+#: The families of the first table: what the rest stands on.
+CORE = ("K", "M", "V", "R", "J", "X")
+
+FAMILIES = MappingProxyType(
+    {
+        "K": "The kernel: exact signs",
+        "M": "The mesh: algebra, flips, insertion, segments",
+        "V": "The verifier",
+        "R": "Refinement",
+        "J": "The machine code",
+        "X": "The tests themselves",
+        "D": "Voronoi diagrams and what is made of them",
+        "ARR": "Arrangements of segments that cross",
+        "P": "Input graphs and files",
+        "H": "Holes",
+        "B": "The conformance suite for other meshers",
+    }
+)
+
+STATEMENTS = MappingProxyType(
+    {
+        "K1": "the filter constants are sound for u = 2^-53",
+        "K2": "the filter bounds hold: static, semi-static, with underflow",
+        "K3": "the filter never lies",
+        "K4": "an unsound constant and a missing guard are found by K3",
+        "K5": "two_sum, two_product, expansion sum and product are exact and bit-disjoint",
+        "K6": "the exponent windows: exact inside, refused one step outside",
+        "K7": "every predicate has the sign in fractions, for all finite doubles, and the stage that decided is known",
+        "K8": "Knuth's axioms, flippability of an edge that is not Delaunay, incircle = lift",
+        "K9": "the perturbed incircle is never 0 and is consistent: one unique triangulation",
+        "M1": "the edge algebra: rot^4 = e, splice is an involution, Euler",
+        "M2": "each flip lowers the potential by exactly incircle; at most n(n-1)/2 flips",
+        "M3": "Lawson ends in the Delaunay triangulation from every triangulation; its smallest angle is maximal",
+        "M4": "incremental insertion equals Lawson equals brute force, for every order",
+        "M5": "constrained: one sink, every segment present, decided by visibility",
+        "V1": "the verifier accepts exactly what has the property that is claimed",
+        "V2": "each condition of the verifier is necessary",
+        "R1": "what refinement returns is what it says: theorems A to F, bounds, distances, grading",
+        "R2": "refinement ends, for every valid graph",
+        "J1": "compiled equals interpreted, bit for bit; no fused multiply-add; interrupts are heard",
+        "X1": "the tests can fail: at least 95 % of the mutants are killed",
+        "D1": "circumcentres are rounded once",
+        "D2": "Voronoi edges are the duals of the edges of the triangulation",
+        "D3": "a Voronoi cell is exactly what is nearest to its site",
+        "D4": "clipped cells are exactly cell and window",
+        "D5": "the cells of a conforming triangulation tile its domain",
+        "D6": "Sibson's coordinates are the parts of the stolen cell",
+        "D7": "the interpolant takes the data, is linear for linear data, and stays within its neighbours",
+        "D8": "Lloyd's energy never grows",
+        "ARR1": "all pairs of segments that meet are found, and no others",
+        "ARR2": "a crossing is rounded to the nearest doubles, or into its grid cell",
+        "ARR3": "the rounded arrangement is planar, and within its stated distance",
+        "ARR4": "snap rounding is that of brute force",
+        "ARR5": "bad input is named, and attributes come along",
+        "ARR6": "snapping is local",
+        "ARR7": "the neighbourhood that is searched again is large enough",
+        "P1": "a graph is refused exactly for the faults that it has",
+        "P2": "points at one position, and only those, share a representative",
+        "P3": "rings, GeoJSON and shapely come back bit for bit",
+        "P4": "graphs on file come back bit for bit",
+        "H1": "the seeds of the holes alone carve the same domain",
+        "B1": "every planted fault is found within the default budget",
+        "B2": "a counterexample is as small as it can be, and shows the same again",
+        "B3": "the known failures of other meshers are found",
+        "B4": "whatever a mesher does to its process, the trial goes on",
+    }
+)
+
+
+def family(identifier: str) -> str:
+    """Return the letters of an identifier."""
+    return identifier.rstrip("0123456789")
