@@ -111,8 +111,8 @@ def _read(path: str) -> "Mesh":
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return _parsed(meshio, path)
-    except MemoryError:
-        raise
+    except MemoryError:  # a reader takes a header at its word
+        raise FileFormatError("meshio asks for more memory than there is to read it", path=path) from None
     except ImportError as error:
         raise FileFormatError(
             f"meshio needs {error.name} for this format: pip install {error.name}", path=path
