@@ -57,7 +57,9 @@ def _of_object(value: object, where: str, depth: int) -> Iterator[Piece]:
     if depth > _DEEPEST:
         raise GeometryError(f"{where}: nested too deeply")
     kind = value.get("type")
-    if isinstance(kind, str) and kind in _READERS:
+    if not isinstance(kind, str):  # arrays do not compare as one thing does
+        raise GeometryError(f"{where}type is {_shown(kind)}, no type of GeoJSON")
+    if kind in _READERS:
         yield from _READERS[kind](_member(value, "coordinates", where), f"{where}coordinates")
     elif kind == "Feature":
         geometry = value.get("geometry")

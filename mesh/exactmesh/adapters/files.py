@@ -11,6 +11,7 @@ from exactmesh.adapters.given import GivenMesh
 from exactmesh.adapters.meshio_mesh import convert as converted
 from exactmesh.adapters.own import convert as own_converted
 from exactmesh.adapters.streams import ByteStream, TextStream
+from exactmesh.adapters.tin import require_tin
 from exactmesh.errors import ExactMeshError, FileFormatError
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ _OWN = (".node", ".ele", ".poly", ".neigh", ".edge", ".npz", ".csv")
 
 
 _BINARY_MEDIT = ".meshb"
+_WKT = ".wkt"
 _MSH = ".msh"  # of Gmsh, where "$" is the first character, and of Ansys
 #: The readers of meshio that take open files, and what they expect.
 _STREAMS: dict[str, type[TextStream | ByteStream]] = {
@@ -70,6 +72,8 @@ def read_foreign(path: str) -> GivenMesh:
     """
     if not os.path.exists(path):
         raise FileFormatError("no such file", path=path)
+    if os.path.splitext(path)[1].lower() == _WKT:
+        require_tin(path)
     mesh = _read(path)
     try:
         return converted(mesh)
@@ -111,8 +115,8 @@ def _read(path: str) -> "Mesh":
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return _parsed(meshio, path)
-    except MemoryError:
-        raise
+    except MemoryError:  # a reader takes a header at its word
+        raise FileFormatError("meshio asks for more memory than there is to read it", path=path) from None
     except ImportError as error:
         raise FileFormatError(
             f"meshio needs {error.name} for this format: pip install {error.name}", path=path

@@ -2,6 +2,7 @@
 
 import io
 import math
+import tokenize
 import warnings
 import zipfile
 import zlib
@@ -32,6 +33,7 @@ _BROKEN = (
     RuntimeError,  # encrypted, RecursionError, NotImplementedError: an unknown compression
     MemoryError,  # numpy's header is parsed as Python
     SyntaxError,
+    tokenize.TokenError,
     zipfile.BadZipFile,
     zlib.error,
     Warning,
