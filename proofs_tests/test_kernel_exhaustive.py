@@ -1,4 +1,4 @@
-"""K3, K4: the shipped filters over every input of tiny formats, compiled; what is faulty is found, and not by chance."""
+"""K3, K4: the shipped filters over every input of tiny formats, compiled: faults are found, and not by chance."""
 
 from collections.abc import Callable
 
