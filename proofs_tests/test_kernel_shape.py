@@ -11,7 +11,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from proofs_tests import kernel_oracle, shape_oracle
 from proofs_tests.kernel_strategies import Point, exponents, few_ulps, finite, moved, point_tuples, scaled, unit
-from proofs_tests.test_kernel_filter import Bounded, largest_needed
+from proofs_tests.rounding_calculus import Bounded, largest_needed
 
 import exactkernel as ek
 from exactkernel.angle import AngleBound, angle_filter
@@ -71,18 +71,18 @@ class TestShapeConstants:
     trigonometric = Bounded(U * (1 + U))  # a pair's head, nearest to a value 2^-1000 from the cosine
 
     def test_angles(self) -> None:
-        needed = largest_needed(self.cross * self.trigonometric)
+        needed = largest_needed((self.cross * self.trigonometric).e)
         assert needed + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
 
     def test_areas_and_lengths(self) -> None:
         exact, squared_bound = Bounded(Fraction(0)), Bounded(Fraction(0)) * Bounded(Fraction(0))
         for bound in (exact, squared_bound):
             worst = Bounded(max(self.cross.e, bound.e))
-            assert largest_needed(worst) + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
+            assert largest_needed(worst.e) + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
 
     def test_control_half_of_it_is_too_little_for_angles(self) -> None:
         """Half the constant."""
-        assert largest_needed(self.cross * self.trigonometric) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
+        assert largest_needed((self.cross * self.trigonometric).e) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
 
 
 @pytest.mark.obligation(

@@ -10,7 +10,7 @@
 #   | if apart > doubt:
 # constant: 1b-53 = exactkernel.constants.UNIT_ROUNDOFF
 # control, a thirty-second of the doubt: 32 * 1b-106 => 1b-106
-# control, the error of the cross product is left out: 4 * e + => 0 * e +
+# control, no allowance for the last rounding: 4 * (1 + g2) => 0x1p-1 * (1 + g2)
 
 #@ -Eno-auto-dichotomy
 tails = ((ct - rt) * (1 + r1) - xt) * (1 + r2) - yt;
