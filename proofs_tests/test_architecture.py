@@ -136,6 +136,7 @@ def run_blocks(text: str, name: str) -> int:
     return len(blocks)
 
 
+@pytest.mark.once
 class TestDocuments:
     """Every ```python block of the README and of docs/ runs as it stands, in an empty folder."""
 

@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from proofs_tests.kernel_strategies import finite
+from proofs_tests.lazy import Lazy
 
 from exactmesh import (
     CoordinateError,
@@ -39,7 +40,7 @@ from exactmesh.errors import (
 from exactmesh.io import read
 
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
-MESH = delaunay(SQUARE)
+MESH = Lazy({"square": lambda: delaunay(SQUARE)})
 HALVES = [(0, 1, 2), (0, 2, 3)]
 NAN, INFINITY = math.nan, math.inf
 
@@ -121,7 +122,7 @@ class TestPoints:
 
     @pytest.mark.parametrize("case", UNREADABLE.values(), ids=UNREADABLE.keys())
     def test_unreadable(self, case: Case) -> None:
-        calls: list[Callable[[npt.ArrayLike], object]] = [delaunay, lambda p: lawson(p, HALVES), MESH.locate]
+        calls: list[Callable[[npt.ArrayLike], object]] = [delaunay, lambda p: lawson(p, HALVES), MESH["square"].locate]
         for call in calls:
             assert_refused(lambda call=call: call(case.points), case)  # type: ignore[misc]  # bound here
 
@@ -132,7 +133,7 @@ class TestPoints:
     def test_control_without_the_culprit(self) -> None:
         """Without the culprit the same input is taken."""
         assert len(delaunay(SQUARE).triangles) == 2
-        assert lawson(SQUARE, HALVES).canonical() == MESH.canonical()
+        assert lawson(SQUARE, HALVES).canonical() == MESH["square"].canonical()
         assert len(delaunay([*SQUARE, (2**53, 0)]).triangles) == 3
 
     def test_too_many(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,9 +189,9 @@ class TestGoodPoints:
         frozen.setflags(write=False)
         for array in (points, frozen):
             mesh = delaunay(array)
-            assert mesh == MESH
+            assert mesh == MESH["square"]
             assert mesh.points.dtype == np.float64
-            assert mesh.locate(array).tolist() == MESH.locate(SQUARE).tolist()
+            assert mesh.locate(array).tolist() == MESH["square"].locate(SQUARE).tolist()
             assert lawson(array, HALVES) == lawson(SQUARE, HALVES)
 
     @given(st.lists(st.tuples(finite, finite), min_size=3, max_size=7))
@@ -266,7 +267,7 @@ class TestTriangles:
         """Any indices: the one triangulation, or a refusal; and a sound quad-edge, or a refusal."""
         refusal = error_of(lambda: lawson(SQUARE, triangles))
         if refusal is None:
-            assert lawson(SQUARE, triangles).canonical() == MESH.canonical()
+            assert lawson(SQUARE, triangles).canonical() == MESH["square"].canonical()
         else:
             assert isinstance(refusal, InadmissibleError)
             assert refusal.indices
@@ -286,7 +287,7 @@ class TestLocate:
 
     @given(hnp.arrays(np.float64, st.tuples(st.integers(0, 5), st.just(2)), elements=finite))
     def test_any_query(self, queries: npt.NDArray[np.float64]) -> None:
-        found = MESH.locate(queries)
+        found = MESH["square"].locate(queries)
         inside = ((queries >= 0.0) & (queries <= 1.0)).all(axis=1)
         assert ((found >= 0) == inside).all()
 

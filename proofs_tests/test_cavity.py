@@ -176,6 +176,7 @@ def compare() -> tuple[int, int, int]:
     return len(results), results.count(False), unequal
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "M5", "search and chance fill a cavity with the same triangles, and chance does not fail", method="differential"
 )
@@ -240,6 +241,7 @@ print(added_work("parabola", 200), added_work("parabola", 400))
 """
 
 
+@pytest.mark.once
 class TestGrowthOfSearch:
     """The count sees what it should: by search alone the work a vertex doubles with the number of vertices."""
 

@@ -21,6 +21,9 @@ from exactmesh.io import Mesh, read, read_pslg, write, write_pslg
 from exactmesh.progress import COMPILING
 from exactmesh.verify import Property, Report, verify
 
+pytestmark = pytest.mark.once
+
+
 SQUARE = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.25)]
 THIN = [(0.0, 0.0), (4.0, -1.0), (8.0, 0.0), (4.0, 1.0)]
 DELAUNAY, NOT_DELAUNAY = [(0, 1, 3), (1, 2, 3)], [(0, 1, 2), (0, 2, 3)]

@@ -25,6 +25,9 @@ from exactmesh.conformance.process import Limits, MesherProcess
 from exactmesh.conformance.reference import resolved
 from exactmesh.conformance.trial import Clock, Trial
 
+pytestmark = pytest.mark.once
+
+
 PLACE = "proofs_tests.planted_meshers"
 FAULTS = [
     pytest.param(task, name, law, outcome, id=name)

@@ -11,6 +11,9 @@ from exactmesh.conformance import assert_admissible, assert_constrained_delaunay
 from exactmesh.errors import ChoiceError
 from exactmesh.verify import Severity
 
+pytestmark = pytest.mark.once
+
+
 KITE = np.array([(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)])
 WRONG, RIGHT = [(0, 1, 2), (0, 2, 3)], [(0, 1, 3), (1, 2, 3)]
 

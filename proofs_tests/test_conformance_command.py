@@ -12,6 +12,9 @@ import pytest
 from exactmesh.cli import main
 from exactmesh.conformance import KNOWN, LAWS, Task
 
+pytestmark = pytest.mark.once
+
+
 ROOT = Path(__file__).resolve().parents[1]
 PLACE = "proofs_tests.planted_meshers"
 SQUARE = "[(0, 0), (1, 0), (1, 1), (0, 1)]"

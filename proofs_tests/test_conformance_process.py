@@ -19,6 +19,9 @@ from exactmesh.conformance.laws import Task
 from exactmesh.conformance.process import Answer, Fate, Limits, MesherProcess
 from exactmesh.conformance.reduction import reduced
 
+pytestmark = pytest.mark.once
+
+
 PLACE = "proofs_tests.planted_meshers"
 MANY = Given.of([(x, y) for x in range(5) for y in range(5)])
 FEW = Given.of([(0, 0), (1, 0), (0, 1)])

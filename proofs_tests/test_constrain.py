@@ -155,6 +155,7 @@ class TestVisibility:
             return
         assert rows == constrained_oracle.constrained_triangles(points, segments)
 
+    @pytest.mark.once
     @given(graphs(most=8))
     @settings(max_examples=25)
     def test_oracle_covers_the_hull(self, graph: Graph) -> None:
@@ -433,6 +434,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "M5", "a constrained insertion with a seeded fault is found by the enumeration", method="mutation"
 )

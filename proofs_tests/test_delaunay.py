@@ -133,6 +133,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "M4", "an insertion with a seeded fault is found by the comparison with brute force", method="mutation"
 )

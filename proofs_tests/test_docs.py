@@ -10,6 +10,9 @@ import pytest
 import exactkernel
 import exactmesh
 
+pytestmark = pytest.mark.once
+
+
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 REFERENCES = DOCS / "references.md"

@@ -28,6 +28,9 @@ from exactmesh import (
 )  # fmt: skip
 from exactmesh import geojson as geojson_module
 
+pytestmark = pytest.mark.once
+
+
 Point = tuple[float, float]
 Ring = list[Point]
 numbers = st.floats(allow_nan=False, allow_infinity=False)

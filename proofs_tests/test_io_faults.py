@@ -17,6 +17,9 @@ from exactmesh.errors import ExactMeshError, FileFormatError, NonFiniteError, Sh
 from exactmesh.io import Mesh, read, read_points, text, write
 from exactmesh.io.atomic import write_whole
 
+pytestmark = pytest.mark.once
+
+
 NODE = "4 2 1 1\n1 0 0 .5 7\n2 1 0 .5 0\n3 1 1 -1e3 0\n4 0 1 0 9\n"
 ELE = "2 3 1\n1 1 2 3 0.25\n2 1 3 4 0.75\n"
 NEIGH = "2 3\n1 -1 2 -1\n2 -1 -1 1\n"

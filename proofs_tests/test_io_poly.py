@@ -16,6 +16,9 @@ from exactmesh import PSLG, ExactMeshError, FaultKind, FileFormatError, Geometry
 from exactmesh.io import Mesh, holds_segments, read, read_pslg, read_triangles, write, write_pslg
 from exactmesh.io import text as text_module
 
+pytestmark = pytest.mark.once
+
+
 FILES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 LAKE = """\
 5 2 1 1

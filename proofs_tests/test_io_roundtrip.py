@@ -13,6 +13,9 @@ from hypothesis import strategies as st
 from exactmesh.io import Mesh, mesh_of, read, read_points, read_triangles, write
 from exactmesh.io import text as text_module
 
+pytestmark = pytest.mark.once
+
+
 doubles = st.floats(allow_nan=False, allow_infinity=False)
 FILES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 

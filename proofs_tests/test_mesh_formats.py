@@ -15,6 +15,9 @@ from exactmesh.errors import FileFormatError
 from exactmesh.io import write_pslg
 from exactmesh.verify import ADMISSIBLE_MESH, Property, Verdict
 
+pytestmark = pytest.mark.once
+
+
 meshio = pytest.importorskip("meshio", reason="pip install 'exactmesh[mesh]'")
 
 MESH = delaunay(np.random.default_rng(1).random((40, 2)))

@@ -55,7 +55,7 @@ def _imported(tmp_path: Path) -> types.ModuleType:
     return module
 
 
-@pytest.mark.obligation("X1", "a mutant is put into a running process just as importing it would")
+@pytest.mark.obligation("X1", "a mutant is put into a running process just as importing it would", method="named cases")
 class TestTransplant:
     """A change inside of functions is exchanged where the functions live; any other change is refused."""
 
@@ -83,7 +83,8 @@ class TestTransplant:
         ("old", "new"),
         [("SCALE = 2", "SCALE = 3"), ("by=1", "by=2"), ("side = 3", "side = 4"), ("    @property\n", "")],
     )
-    def test_anything_else_is_refused(self, tmp_path: Path, old: str, new: str) -> None:
+    def test_control_anything_else_is_refused(self, tmp_path: Path, old: str, new: str) -> None:
+        """Changes outside of functions, which cannot be exchanged in place."""
         module = _imported(tmp_path)
         assert not transplant(module, ORIGINAL, ORIGINAL.replace(old, new))
         assert (module.plain(5), module.Box().area()) == (7, 9)
@@ -92,7 +93,9 @@ class TestTransplant:
         assert not transplant(_imported(tmp_path), ORIGINAL, ORIGINAL)
 
 
-@pytest.mark.obligation("X1", "each mutant is another program, and none is one that no test can see")
+@pytest.mark.obligation(
+    "X1", "each mutant is another program, and none is one that no test can see", method="enumeration"
+)
 class TestMutants:
     """Each mutant parses, differs from the original in one line, and is none of what never runs."""
 
@@ -128,7 +131,7 @@ def _mentioned(mutant: Mutant) -> bool:
     return any(f": {mutant.before} -> " in listed for listed in Survivors.listed().reasons)
 
 
-@pytest.mark.obligation("X1", "the tests of a mutant are those that run its line")
+@pytest.mark.obligation("X1", "the tests of a mutant are those that run its line", method="named cases")
 class TestCovering:
     """A line's tests, those of a fixture's file, and for lines that run on import all tests of the file."""
 
@@ -145,5 +148,6 @@ class TestCovering:
         covering = Covering(lines, {"a/test_b.py::test_1": 2.0, "a/test_b.py::test_2": 1.0})
         assert covering.tests(self.mutant) == ["a/test_b.py::test_2"]
 
-    def test_no_test(self) -> None:
+    def test_control_no_test(self) -> None:
+        """A line that no test runs."""
         assert Covering({}, {"a/test_b.py::test_1": 1.0}).tests(self.mutant) == []

@@ -15,6 +15,9 @@ from proofs_tests.obligations.measured import Figures, load, update
 from proofs_tests.obligations.page import page
 from proofs_tests.obligations.statements import STATEMENTS
 
+pytestmark = pytest.mark.once
+
+
 OBLIGATIONS = collect()
 PAGE = ROOT / "docs" / "obligations.md"
 DOCUMENTS = sorted(path for path in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")] if path != PAGE)

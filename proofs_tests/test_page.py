@@ -15,6 +15,9 @@ from proofs_tests.browser import Page, browser
 from exactmesh import PSLG, constrained_delaunay, delaunay
 from exactmesh.verify import Property, Report, verify
 
+pytestmark = pytest.mark.once
+
+
 HOSTILE = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>&amp;"
 KITE = [(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)]
 HALVES = [(0, 1, 2), (0, 2, 3)]

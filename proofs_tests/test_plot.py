@@ -11,6 +11,9 @@ from exactmesh.demo import course_points, mosaic
 from exactmesh.errors import ExactMeshError, FileFormatError, TopologyError
 from exactmesh.plot import PICTURES, PlotUnavailableError, plot_mesh
 
+pytestmark = pytest.mark.once
+
+
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 HALVES = np.array([(0, 1, 2), (0, 2, 3)])
 

@@ -170,6 +170,7 @@ class TestOneGraph:
             assert [vertices[0, 0], vertices[-1, 1]] == mesh.representative[ends].tolist()
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "M5",
     "all counties as one graph, borders shared, crossings split, by either rule",

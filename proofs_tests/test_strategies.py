@@ -20,6 +20,9 @@ from exactmesh import PSLG, constrained_delaunay, strategies, verify
 from exactmesh.errors import HypothesisUnavailableError, OptionError
 from exactmesh.strategies.regular import circle
 
+pytestmark = pytest.mark.once
+
+
 T = TypeVar("T")
 Family: TypeAlias = Callable[..., st.SearchStrategy[FloatArray]]
 Graphs: TypeAlias = Callable[..., st.SearchStrategy[PSLG]]

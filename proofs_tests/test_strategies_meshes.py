@@ -14,6 +14,9 @@ from exactmesh.errors import OptionError
 from exactmesh.strategies import Corrupted, Corruption, PlainMesh, corrupt
 from exactmesh.verify import Property, Verdict
 
+pytestmark = pytest.mark.once
+
+
 T = TypeVar("T")
 quiet = settings(
     max_examples=30, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)

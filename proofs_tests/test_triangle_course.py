@@ -24,6 +24,9 @@ from exactmesh.triangle import (
     voronoi,
 )
 
+pytestmark = pytest.mark.once
+
+
 NAMES = [
     "A", "bbox", "box", "diamond_02_00009", "dots", "double_hex", "double_hex2", "double_hex3", "ell", "face",
     "polygon", "spiral", "square_circle_hole", "triangle",

@@ -24,6 +24,9 @@ from exactmesh.triangle import (
     voronoi,
 )
 
+pytestmark = pytest.mark.once
+
+
 CALLS = calls()
 CONTRACT: dict[str, dict[str, str]] = json.loads(RECORD.read_text(encoding="utf-8"))
 CASES = [(name, o) for name, by_switches in CONTRACT.items() for o in by_switches]

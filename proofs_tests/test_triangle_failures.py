@@ -30,6 +30,9 @@ from exactmesh import (
 )
 from exactmesh.triangle import SwitchError, TriangleDict, TriangleWarning, get_data, load, triangulate
 
+pytestmark = pytest.mark.once
+
+
 CLAIMS = ("orientation", "admissible", "segments_present")
 
 

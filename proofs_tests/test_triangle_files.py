@@ -14,6 +14,9 @@ from exactmesh import FileFormatError, NonFiniteError, ShapeError, cli, delaunay
 from exactmesh.io import Mesh, read, read_areas, read_pslg, write, write_areas, write_voronoi
 from exactmesh.triangle import TriangleDict, get_data, load, loads, triangulate
 
+pytestmark = pytest.mark.once
+
+
 LAKE = """8 2 1 1    # x, y, depth, marker
 1 0 0 1 0
 2 9 0 1 0

@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 
 from exactmesh.triangle import MEANINGS, Switch, SwitchError, Switches, TriangleWarning, parse, triangulate
 
+pytestmark = pytest.mark.once
+
+
 NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 TOKEN = re.compile(rf"o2|S[0-9]*|[qa]{NUMBER}?|[prucDLsYejvngBPNEIOzCQVXiFlwWhA]")
 GRAMMAR = re.compile(rf"(?:-?(?:{TOKEN.pattern})*\s+)*-?(?:{TOKEN.pattern})*")

@@ -7,6 +7,7 @@ import pickle
 import sys
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,11 +17,14 @@ from hypothesis import strategies as st
 from proofs_tests import mesh_oracle, oracles
 from proofs_tests.enumeration import grid, triangulations
 from proofs_tests.kernel_strategies import Point
+from proofs_tests.lazy import Lazy
 from proofs_tests.mesh_strategies import point_sets
 from proofs_tests.oracles import Triangle
 
 from exactkernel.jit import COMPILED
+from exactkernel.types import FloatArray, IntArray
 from exactmesh import PSLG, ExactMeshError, Triangulation, constrained_delaunay, delaunay
+from exactmesh.columns import MarkerArray
 from exactmesh.demo import lake
 from exactmesh.locate import locate_points
 
@@ -34,17 +38,21 @@ EXTREME: dict[str, list[Point]] = {
 }
 
 
-def meshes() -> dict[str, Triangulation]:
-    random = np.random.default_rng(2)
-    found = {name: delaunay(points) for name, points in EXTREME.items()}
-    found["grid"] = delaunay(grid(5, 4))
-    found["random"] = delaunay(random.random((40, 2)))
-    found["circle"] = delaunay([(math.cos(i), math.sin(i)) for i in range(30)])
-    return found
+MESHES = Lazy(
+    {name: partial(delaunay, points) for name, points in EXTREME.items()}
+    | {
+        "grid": lambda: delaunay(grid(5, 4)),
+        "random": lambda: delaunay(np.random.default_rng(2).random((40, 2))),
+        "circle": lambda: delaunay([(math.cos(i), math.sin(i)) for i in range(30)]),
+    }
+)
+EACH = pytest.mark.parametrize("mesh", MESHES, indirect=True)
 
 
-MESHES = meshes()
-EACH = pytest.mark.parametrize("mesh", MESHES.values(), ids=MESHES.keys())
+@pytest.fixture
+def mesh(request: pytest.FixtureRequest) -> Triangulation:
+    """Return the mesh of that name."""
+    return MESHES[request.param] if request.param in MESHES else CONSTRAINED[request.param]
 
 
 def triangles_of(mesh: Triangulation) -> list[Triangle]:
@@ -227,7 +235,7 @@ class TestFrozen:
         assert repr(MESHES["grid"]) == "Triangulation(20 vertices, 24 triangles)"
 
 
-def constrained_meshes() -> dict[str, Triangulation]:
+def constrained_meshes() -> Lazy[Triangulation]:
     """A square with a hole, regions, markers, attributes, duplicates and a point outside; and segments that cross."""
     points = [(0, 0), (4, 0), (4, 4), (0, 4), (1, 1), (2, 1), (1, 2), (3, 3), (4, 4), (9, 9), (2, 0)]
     segments = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 4), (7, 8), (0, 10)]
@@ -241,16 +249,20 @@ def constrained_meshes() -> dict[str, Triangulation]:
         point_attributes=[[float(i), -1.0] for i in range(11)],
     )
     crossed = PSLG(points[:4], [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)], segment_markers=range(6))
-    return {
-        "carved": constrained_delaunay(full),
-        "whole": constrained_delaunay(full, carve=False),
-        "split": constrained_delaunay(crossed, crossings="split"),
-    }
+    return Lazy(
+        {
+            "carved": lambda: constrained_delaunay(full),
+            "whole": lambda: constrained_delaunay(full, carve=False),
+            "split": lambda: constrained_delaunay(crossed, crossings="split"),
+        }
+    )
 
 
 CONSTRAINED = constrained_meshes()
-ARRAYS = [f.name for f in dataclasses.fields(Triangulation) if isinstance(getattr(MESHES["grid"], f.name), np.ndarray)]
-EACH_CONSTRAINED = pytest.mark.parametrize("mesh", CONSTRAINED.values(), ids=CONSTRAINED.keys())
+ARRAYS = [
+    field.name for field in dataclasses.fields(Triangulation) if field.type in (FloatArray, IntArray, MarkerArray)
+]
+EACH_CONSTRAINED = pytest.mark.parametrize("mesh", CONSTRAINED, indirect=True)
 EACH_COPY = pytest.mark.parametrize("made", COPIES.values(), ids=COPIES.keys())
 
 

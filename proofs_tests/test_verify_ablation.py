@@ -63,6 +63,7 @@ def is_right(points: Points, triangles: Sequence[Triangle]) -> bool:
     )
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "V1",
     "theorems A to D: the local conditions accept exactly the Delaunay triangulations",
@@ -137,6 +138,7 @@ class TestConvexConditionsAreNecessary:
         assert broken_by_cycle(exact, range(len(exact))) == {name}
         assert not 0 < _area(exact) == oracles.hull_area(exact)
 
+    @pytest.mark.once
     @pytest.mark.parametrize("size", [3, 4, 5])
     def test_they_suffice(self, size: int) -> None:
         """For every closed walk of distinct points of a grid: the conditions hold exactly of the convex polygons, those
@@ -220,6 +222,7 @@ class TestDomainConditionsAreNecessary:
         assert verify(KITE, HALVES, segments=[(0, 2)]).ok
 
 
+@pytest.mark.once
 @pytest.mark.obligation(
     "V1",
     "theorems A, B, E: the conditions accept exactly the constrained Delaunay triangulations",

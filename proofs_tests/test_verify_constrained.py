@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from proofs_tests import domain_oracle, oracles
 from proofs_tests.domain_oracle import Cells, Line
+from proofs_tests.once import once_after
 from proofs_tests.oracles import RationalPoint, Triangle
 from proofs_tests.recording import Record
 
@@ -266,15 +267,16 @@ class TestEverySet:
     """For every second set of triangles over five points each decided verdict about segments and domains is that of
     brute force: visibility, chains and faces by definition. Undecided is only what the enum says."""
 
-    @pytest.mark.parametrize(("points", "segments"), WITH_SEGMENTS.values(), ids=WITH_SEGMENTS.keys())
-    def test_segments(self, points: Points, segments: list[Pair], record_property: Record) -> None:
+    @pytest.mark.parametrize("case", once_after(1, WITH_SEGMENTS.values(), WITH_SEGMENTS.keys()))
+    def test_segments(self, case: tuple[Points, list[Pair]], record_property: Record) -> None:
+        points, segments = case
         truth = Truth(points, segments)
         some = list(all_sets(points))[::2]
         for triangles in some:
             assert not disagreements(truth, triangles), triangles
         record_property("cases", len(some))
 
-    @pytest.mark.parametrize("case", DOMAINS.values(), ids=DOMAINS.keys())
+    @pytest.mark.parametrize("case", once_after(1, DOMAINS.values(), DOMAINS.keys()))
     def test_domain(self, case: Case, record_property: Record) -> None:
         truth = truth_of(case)
         some = list(all_sets(case[0]))[::2]
@@ -339,7 +341,7 @@ def grown(truth: Truth, random: Random) -> list[Triangle]:
 class TestRandomDomains:
     """The same for random domains over points of a small grid, where everything coincides with everything."""
 
-    @pytest.mark.parametrize("seed", range(60))
+    @pytest.mark.parametrize("seed", once_after(20, range(60)))
     def test_verdicts(self, seed: int, record_property: Record) -> None:
         random = Random(seed)
         truth = random_truth(random)

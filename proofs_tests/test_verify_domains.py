@@ -226,6 +226,7 @@ ABLATIONS: list[tuple[object, str, object]] = [
 class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere, so none is superfluous."""
 
+    @pytest.mark.once
     @pytest.mark.parametrize(("module", "name", "instead"), ABLATIONS, ids=[name for _, name, _ in ABLATIONS])
     def test_control_missing_check(
         self, module: object, name: str, instead: object, monkeypatch: pytest.MonkeyPatch

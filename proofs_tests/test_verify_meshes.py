@@ -233,6 +233,7 @@ class TestAblation:
     """Without any one of its checks the verifier contradicts brute force somewhere: none is superfluous, and
     the comparison with brute force would notice its loss."""
 
+    @pytest.mark.once
     @pytest.mark.parametrize("check", ["check_zero_area", "check_overlap", "check_sweep", "check_hull", "check_fans"])
     def test_control_missing_check(self, check: str, monkeypatch: pytest.MonkeyPatch) -> None:
         """The checks of triangles and edges taken out, one by one."""

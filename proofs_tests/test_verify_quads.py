@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 from proofs_tests import cells_oracle, domain_oracle, oracles
 from proofs_tests.cells_oracle import Cell
+from proofs_tests.once import once_after
 from proofs_tests.recording import Record
 from proofs_tests.test_kernel_compiled import in_a_child
 
@@ -120,7 +121,7 @@ class TestEverySmallSet:
     """For every set of two triangles and quadrilaterals over five points, and some of three, each verdict is that of
     brute force on polygons."""
 
-    @pytest.mark.parametrize("points", CONFIGURATIONS.values(), ids=CONFIGURATIONS.keys())
+    @pytest.mark.parametrize("points", once_after(1, CONFIGURATIONS.values(), CONFIGURATIONS.keys()))
     def test_verdicts(self, points: Points, record_property: Record) -> None:
         some = list(some_sets(points, 60))
         for i, chosen in enumerate(some):
@@ -128,6 +129,7 @@ class TestEverySmallSet:
             assert not disagreements(points, chosen, orientation), (chosen, orientation)
         record_property("cases", len(some))
 
+    @pytest.mark.once
     @pytest.mark.parametrize("name", ["two inside", "a point inside an edge", "the centre of a square"])
     def test_cutting_convex_ones_changes_nothing(self, name: str) -> None:
         """Law: convex cells are admissible if and only if the triangles into which diagonals cut them are."""

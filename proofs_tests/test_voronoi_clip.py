@@ -256,6 +256,7 @@ class TestDomain:
         middle = mesh.points.tolist().index([1.0, 1.0])
         assert cells.sites.tolist().count(middle) == 2
 
+    @pytest.mark.once
     @given(st.lists(st.tuples(st.integers(1, 31), st.integers(1, 31)), max_size=12))
     @settings(max_examples=60)
     def test_convex_domain_is_a_window(self, inner: list[tuple[int, int]]) -> None:
