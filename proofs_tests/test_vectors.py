@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from proofs_tests import kernel_oracle
+from proofs_tests.recording import Record
 from proofs_tests.vector_answers import (
     ADAPTIVE,
     BATCH,
@@ -45,17 +46,17 @@ class TestHardCases:
     """Scalar, batch, in loops of any context: the answer is the sign of the file, and that is the sign in fractions."""
 
     @pytest.mark.parametrize("name", SCALAR)
-    def test_scalar(self, name: str, record_property: Callable[[str, object], None]) -> None:
+    def test_scalar(self, name: str, record_property: Record) -> None:
         record_property("cases", len(cases_of(name)))
         assert disagreements(name, lambda case: {scalar(name, case)}) == 0
 
     @pytest.mark.parametrize("name", NAMES)
-    def test_loops(self, name: str, record_property: Callable[[str, object], None]) -> None:
+    def test_loops(self, name: str, record_property: Record) -> None:
         record_property("cases", len(cases_of(name)))
         assert disagreements(name, lambda case: set(in_loops(name, case))) == 0
 
     @pytest.mark.parametrize("name", BATCH)
-    def test_batch(self, name: str, record_property: Callable[[str, object], None]) -> None:
+    def test_batch(self, name: str, record_property: Record) -> None:
         """All at once, which no window holds, and each family by itself, which some window may."""
         record_property("cases", len(cases_of(name)))
         families = {family for family, _ in cases_of(name)}
@@ -65,7 +66,7 @@ class TestHardCases:
             signs = BATCH[name](*(columns[:, i] for i in range(columns.shape[1])))
             assert signs.tolist() == [case.signs[0] for case in cases]
 
-    def test_perturbed(self, record_property: Callable[[str, object], None]) -> None:
+    def test_perturbed(self, record_property: Record) -> None:
         record_property("cases", len(cases_of("incircle")))
         for _, case in cases_of("incircle"):
             points = points_of(BY_NAME["incircle"], case.values)
