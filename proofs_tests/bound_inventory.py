@@ -77,7 +77,9 @@ def _is_bound(node: ast.AST) -> bool:
 def _of_file(path: Path, root: Path) -> Iterator[str]:
     module = ".".join(path.relative_to(root).with_suffix("").parts)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef) and any(_is_bound(inner) for line in node.body for inner in ast.walk(line)):
+        if isinstance(node, ast.FunctionDef) and any(
+            _is_bound(inner) for line in node.body for inner in ast.walk(line)
+        ):
             yield f"{module}.{node.name}"
 
 

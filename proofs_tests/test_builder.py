@@ -53,8 +53,9 @@ def same(builder: TriangulationBuilder) -> bool:
     method="stateful machine",
 )
 class TestEditing:
-    """After every step, the builder's triangulation is the one that is built at once from the model's points and
-    segments; errors name exactly the segments that the model says, and change nothing."""
+    """After every step, the builder's triangulation is constrained Delaunay by brute force and the one that is built at
+    once from the model's points and segments, its inside a sphere of triangles; errors name exactly the segments that
+    the model says; illegal calls raise and change nothing."""
 
     def test_machine(self) -> None:
         run_state_machine_as_test(Editing, settings=STEPS)

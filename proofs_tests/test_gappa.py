@@ -81,7 +81,9 @@ class TestHeads:
         assert functions_with_bounds() - cited - set(ELSEWHERE) == {"exactmesh.verify.grading.grade"}
 
 
-@pytest.mark.obligation("K2", "the filter bounds, the windows, the grid stages, the double-doubles", method="Gappa and Coq")
+@pytest.mark.obligation(
+    "K2", "the filter bounds, the windows, the grid stages, the double-doubles", method="Gappa and Coq"
+)
 class TestProofs:
     """Gappa proves the statement of each script; Coq checks the certificate, and all that it assumes are the axioms of
     its own real numbers: the identities that Gappa takes from a script as hints are proved, too."""
@@ -123,7 +125,9 @@ class TestProofs:
         assert not axioms_of(prints_of(proof, "wrong", tmp_path)) <= STANDARD_AXIOMS
 
 
-@pytest.mark.obligation("K2", "a prover that is missing skips with a reason, or fails where it is required", method="named cases")
+@pytest.mark.obligation(
+    "K2", "a prover that is missing skips with a reason, or fails where it is required", method="named cases"
+)
 class TestMissingProvers:
     """Without Gappa or Coq the proofs are skipped and say how to install them; under EXACTMESH_REQUIRE_PROVERS=1 they
     fail."""

@@ -514,7 +514,7 @@ class TestSurgery:
     algebra, every piece of it a closed orientable surface; an illegal call raises TopologyError and changes nothing."""
 
     def test_any_sequence(self) -> None:
-        steps = 300 if COMPILED else 60
+        steps = 120 if COMPILED else 60
         run_state_machine_as_test(Surgery, settings=settings(max_examples=steps, stateful_step_count=30))
 
     @pytest.mark.parametrize("fault", FAULTS)
