@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
-from proofs_tests import kernel_oracle, oracles
+from proofs_tests import mesh_oracle, oracles
 from proofs_tests.enumeration import CIRCLE_OF_EIGHT
 from proofs_tests.oracles import RationalPoint
 
@@ -83,7 +83,7 @@ def is_constrained_delaunay(mesh: Triangulation) -> bool:
             a, b = edge
             c, d = apexes
             ccw = oracles.counterclockwise(points, (a, b, c))
-            if kernel_oracle.incircle_perturbed(*(points[v] for v in ccw), points[d]) > 0:
+            if not mesh_oracle.is_perturbed_empty(points, ccw, [d]):
                 return False
     return set(np.unique(mesh.triangles).tolist()) == set(range(len(points)))
 
@@ -258,7 +258,7 @@ class Editing(RuleBasedStateMachine):
 
     @invariant()
     def is_so_by_brute_force(self) -> None:
-        """Constrained Delaunay in fractions; segments are the chains of the vertices on them, no other edge is fixed."""
+        """Constrained Delaunay in fractions; just the chains of the vertices on the segments are fixed."""
         if self.is_flat():
             return
         mesh = self.builder.triangulation()

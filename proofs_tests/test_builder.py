@@ -36,7 +36,7 @@ from exactmesh.editing import builder as module
 from exactmesh.editing.draft import EDGES, Draft
 from exactmesh.editing.walk import INSIDE, ON_EDGE, ON_VERTEX, walk
 
-STEPS = settings(settings(), max_examples=settings().max_examples // (5 if COMPILED else 15), stateful_step_count=25)
+STEPS = settings(settings(), max_examples=settings().max_examples // (10 if COMPILED else 15), stateful_step_count=25)
 
 
 def same(builder: TriangulationBuilder) -> bool:
