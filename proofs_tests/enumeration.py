@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import combinations, permutations
 
 import numpy as np
@@ -17,6 +18,7 @@ __all__ = [
     "COUNTS",
     "Triangulation",
     "canonical_triangles",
+    "count_triangulations",
     "grid",
     "primal_permutations",
     "reachable_states",
@@ -150,3 +152,32 @@ def reachable_states(k: int) -> IntArray:
 def primal_permutations(states: IntArray) -> set[tuple[int, ...]]:
     """Return onext of the primal quarter-edges alone, of each state."""
     return {tuple(row) for row in (states[:, ::2] // 2).tolist()}
+
+
+def count_triangulations(points: Sequence[tuple[int, int]]) -> int:
+    """Return how many triangulations of the hull use all the points.
+
+    As :func:`triangulations`, but what is still to be covered is known by its boundary alone, the edges that want a
+    triangle on their left: regions that are met again are not counted again.
+    """
+    exact = [(Fraction(x), Fraction(y)) for x, y in points]
+    on_left: dict[tuple[int, int], list[Triangle]] = {}
+    for a, b, c in _empty_triangles(exact):
+        for edge in ((a, b), (b, c), (c, a)):
+            on_left.setdefault(edge, []).append((a, b, c))
+    crossing = {e: {f for f in on_left if _crosses(exact, e, f)} for e in on_left}
+
+    @cache
+    def completions(wanting: frozenset[tuple[int, int]]) -> int:
+        if not wanting:
+            return 1
+        total = 0
+        for a, b, c in on_left.get(min(wanting), []):
+            edges = {(a, b), (b, c), (c, a)}
+            inside = edges - wanting
+            if any(crossing[edge] & wanting for edge in inside):
+                continue  # it leaves the region
+            total += completions(wanting - edges | {(j, i) for i, j in inside})
+        return total
+
+    return completions(frozenset(_hull_edges(exact)))

@@ -2,26 +2,29 @@
 
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings
-from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule, run_state_machine_as_test
+from _pytest.outcomes import Failed
+from hypothesis import Phase, settings
+from hypothesis.stateful import run_state_machine_as_test
 from mypy import api as mypy
 from proofs_tests.enumeration import grid, primal_permutations, reachable_states, triangulations
 from proofs_tests.recording import Record
+from proofs_tests.surgery import Surgery
 
 from exactkernel.jit import COMPILED
 from exactkernel.types import IntArray
 from exactmesh import Edge, Face, Primal, QuadEdge, QuarterEdge, Vertex
 from exactmesh import edgealgebra as algebra
 from exactmesh.connectivity import neighbors_of, rings_of
+from exactmesh.edgealgebra import EdgeArray
 from exactmesh.errors import ShapeError, TopologyError
 from exactmesh.ids import OUTSIDE
+from exactmesh.quadedge import NO_VERTEX, Kind
 
 Permutation = list[int]
 
@@ -410,137 +413,130 @@ class TestDerivedOperations:
         assert surface.triangles().shape == (0, 3)
 
 
-class Model(RuleBasedStateMachine):
-    """onext of the primal quarter-edges in a dictionary; the dual follows from it."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.surface = QuadEdge(capacity=1)
-        self.onext: dict[int, int] = {}
-
-    def pick(self, data: st.DataObject) -> Edge[Primal]:
-        return self.surface.edge(data.draw(st.sampled_from(sorted(self.onext))))
-
-    def splice(self, a: int, b: int) -> None:
-        self.onext[a], self.onext[b] = self.onext[b], self.onext[a]
-
-    def oprev(self, q: int) -> int:
-        return next(p for p, after in self.onext.items() if after == q)
-
-    def lnext(self, q: int) -> int:
-        return self.oprev(q ^ 2)
-
-    @rule()
-    def make(self) -> None:
-        q = self.surface.make_edge(Vertex(len(self.onext)), Vertex(0)).index
-        assert q not in self.onext
-        self.onext[q], self.onext[q ^ 2] = q, q ^ 2
-
-    @precondition(lambda self: self.onext)
-    @rule(data=st.data())
-    def splice_primal(self, data: st.DataObject) -> None:
-        a, b = self.pick(data), self.pick(data)
-        self.surface.splice(a, b)
-        self.splice(a.index, b.index)
-
-    @precondition(lambda self: self.onext)
-    @rule(data=st.data())
-    def splice_dual(self, data: st.DataObject) -> None:
-        """e rot onext = e oprev inv_rot: the dual splice exchanges what comes before a and b."""
-        a, b = self.pick(data), self.pick(data)
-        self.surface.splice(a.rot, b.rot)
-        p, q = self.oprev(a.index), self.oprev(b.index)
-        self.onext[p], self.onext[q] = b.index, a.index
-
-    @precondition(lambda self: self.onext)
-    @rule(data=st.data())
-    def connect(self, data: st.DataObject) -> None:
-        a, b = self.pick(data), self.pick(data)
-        after = self.lnext(a.index)
-        new = self.surface.connect(a, b)
-        assert (new.org, new.dest) == (a.dest, b.org)
-        self.onext[new.index], self.onext[new.index ^ 2] = new.index, new.index ^ 2
-        self.splice(new.index, after)
-        self.splice(new.index ^ 2, b.index)
-
-    @precondition(lambda self: self.onext)
-    @rule(data=st.data())
-    def delete(self, data: st.DataObject) -> None:
-        edge = self.pick(data)
-        self.surface.delete_edge(edge)
-        for q in (edge.index, edge.index ^ 2):
-            self.splice(q, self.oprev(q))
-        for q in (edge.index, edge.index ^ 2):
-            assert self.onext.pop(q) == q
-
-    @precondition(lambda self: self.onext)
-    @rule(data=st.data())
-    def swap(self, data: st.DataObject) -> None:
-        edge = self.pick(data)
-        e = edge.index
-        faces = []
-        for q in (e, e ^ 2):
-            face = [q]
-            while self.lnext(face[-1]) != q:
-                face.append(self.lnext(face[-1]))
-            faces.append(face)
-        if any(len(face) != 3 for face in faces) or e ^ 2 in faces[0]:
-            with pytest.raises(TopologyError):
-                self.surface.swap(edge)
-            return
-        self.surface.swap(edge)
-        a, b = self.oprev(e), self.oprev(e ^ 2)
-        self.splice(e, a)
-        self.splice(e ^ 2, b)
-        self.splice(e, self.lnext(a))
-        self.splice(e ^ 2, self.lnext(b))
-
-    @invariant()
-    def is_the_model(self) -> None:
-        self.surface.check()
-        assert len(self.surface) * 2 == len(self.onext)
-        assert {e.index for edge in self.surface.edges() for e in (edge, edge.sym)} == set(self.onext)
-        for q, after in self.onext.items():
-            assert self.surface.edge(q).onext.index == after
-            assert self.surface.edge(after).rot.onext.index == self.surface.edge(q).inv_rot.index
-
-    @invariant()
-    def satisfies_euler(self) -> None:
-        """Whatever was done, each piece is a closed orientable surface."""
-        v, e, f = self.surface.counts()
-        assert (v - e + f) % 2 == 0
+def half_a_splice(ring: EdgeArray, a: int, b: int) -> None:
+    """Exchange what follows a and b, and forget the dual."""
+    ring[a], ring[b] = ring[b], ring[a]
 
 
-def rejected(check: Callable[[], None]) -> bool:
+class KeepsFaces(QuadEdge):
+    """swap turns the edge and leaves the labels of the faces where they were."""
+
+    def swap(self, edge: Edge[Primal]) -> None:
+        before = self._face.copy()
+        super().swap(edge)
+        self._face[:] = before
+
+
+class WrongCorner(QuadEdge):
+    """connect begins at a, not at the edge after it."""
+
+    def connect(self, a: Edge[Primal], b: Edge[Primal]) -> Edge[Primal]:
+        self._own_primal(a, b)
+        new = self.make_edge(a.dest, b.org)
+        self.splice(new, a.sym)
+        self.splice(new.sym, b)
+        return new
+
+
+class OneEnd(QuadEdge):
+    """delete_edge takes the edge out at one end only."""
+
+    def delete_edge(self, edge: Edge[Primal]) -> None:
+        self._own_primal(edge)
+        self.splice(edge, edge.oprev)
+        q = edge.index & ~3
+        self._ring[q : q + 4] = -1
+        self._free.append(q)
+
+
+class Remembers(QuadEdge):
+    """make_edge gives an edge the faces of the deleted one whose place it takes."""
+
+    def make_edge(self, org: Vertex = NO_VERTEX, dest: Vertex = NO_VERTEX) -> Edge[Primal]:
+        before = self._face.copy()
+        edge = super().make_edge(org, dest)
+        q = edge.index >> 1
+        if q < len(before):
+            self._face[q : q + 2] = before[q : q + 2]
+        return edge
+
+
+class LooksLate(QuadEdge):
+    """swap refuses what is no quadrilateral after it has relabelled it."""
+
+    def swap(self, edge: Edge[Primal]) -> None:
+        self._own_primal(edge)
+        self._vertex[edge.index >> 1] += 1
+        super().swap(edge)
+        self._vertex[edge.index >> 1] -= 1
+
+
+class AnyKind(QuadEdge):
+    """splice takes a primal and a dual edge."""
+
+    def splice(self, a: Edge[Kind], b: Edge[Kind]) -> None:
+        self._own(a, b)
+        algebra.splice(self._ring, a.index, b.index)
+
+
+class Undead(QuadEdge):
+    """Deleted edges are taken for living ones."""
+
+    def ring_of(self, index: QuarterEdge) -> EdgeArray:
+        if not 0 <= index < 4 * self._count:
+            raise TopologyError(f"edge {index >> 2} does not exist")
+        return self._ring
+
+
+FAULTS = [KeepsFaces, WrongCorner, OneEnd, Remembers, LooksLate, AnyKind, Undead]
+SEARCH = settings(
+    max_examples=500,
+    stateful_step_count=30,
+    phases=[Phase.generate],
+    print_blob=False,
+    report_multiple_bugs=False,
+    derandomize=True,
+)
+
+
+def is_found() -> bool:
+    """Tell whether the machine fails."""
     try:
-        check()
-    except (AssertionError, TopologyError):
+        run_state_machine_as_test(Surgery, settings=SEARCH)
+    except (AssertionError, TopologyError, IndexError, KeyError, Failed):
         return True
     return False
 
 
 @pytest.mark.obligation("M1", "the quad-edge is a model of the algebra, step by step", method="stateful machine")
-class TestModel:
-    """After any sequence of operations, deletions included, the quad-edge is its model, and an edge algebra."""
+class TestSurgery:
+    """After any sequence of operations, deletions included, the quad-edge is its model with its labels and an edge
+    algebra, every piece of it a closed orientable surface; an illegal call raises TopologyError and changes nothing."""
 
     def test_any_sequence(self) -> None:
-        run_state_machine_as_test(Model, settings=settings(max_examples=100, stateful_step_count=30))
+        steps = 120 if COMPILED else 60
+        run_state_machine_as_test(Surgery, settings=settings(max_examples=steps, stateful_step_count=30))
 
-    def test_control_lost_splice(self) -> None:
-        """A splice that the model does and the quad-edge does not."""
-        machine = Model()
-        machine.make()
-        machine.make()
-        machine.is_the_model()
-        machine.splice(0, 4)  # in the model only
-        assert rejected(machine.is_the_model)
+    @pytest.mark.parametrize("fault", FAULTS)
+    def test_control_a_faulty_operation_is_found(self, fault: type[QuadEdge], monkeypatch: pytest.MonkeyPatch) -> None:
+        """One of seven operations has a fault: wrong corner, one end, stale labels, a late or a missing refusal."""
+        monkeypatch.setattr(Surgery, "Surface", fault)
+        assert is_found()
+
+    def test_control_a_splice_without_the_dual_is_found(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """splice exchanges the primal rings and forgets the dual ones."""
+        monkeypatch.setattr(algebra, "splice", half_a_splice)
+        assert is_found()
 
     def test_control_corrupt_ring(self) -> None:
-        """One entry of a ring overwritten."""
-        machine = Model()
-        machine.make()
+        """One entry of the ring is another."""
+        machine = Surgery()
+        machine.make(0, 1)
+        machine.is_the_model()
         machine.surface.ring_of(QuarterEdge(0))[0] = 2
-        assert rejected(machine.is_the_model)
+        for check in (machine.is_an_edge_algebra, machine.is_the_model):
+            with pytest.raises((AssertionError, TopologyError)):
+                check()
 
 
 @pytest.mark.bounds

@@ -28,9 +28,13 @@ def shown(outcomes: list[Outcome]) -> Table:
 
 
 def main(
-    targets: Annotated[list[str] | None, typer.Argument(metavar="[TARGET ...]", help=f"Some of {', '.join(TARGETS)}.")] = None,
+    targets: Annotated[
+        list[str] | None, typer.Argument(metavar="[TARGET ...]", help=f"Some of {', '.join(TARGETS)}.")
+    ] = None,
     minutes: Annotated[float, typer.Option(min=0.05, help="For all targets together, one after another.")] = 5.0,
-    folder: Annotated[Path, typer.Option(help="Where findings go, and inputs that reached new lines.")] = Path(".fuzzing"),
+    folder: Annotated[Path, typer.Option(help="Where findings go, and inputs that reached new lines.")] = Path(
+        ".fuzzing"
+    ),
 ) -> None:
     """Look for inputs that break the law of the readers: a right result, or a typed error. Exit code 1 if there are."""
     console = Console()
@@ -42,17 +46,26 @@ def main(
         raise typer.Exit(2) from None
     folder.mkdir(parents=True, exist_ok=True)
     seconds = 60.0 * minutes / len(chosen)
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[found]} found"), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[found]} found"),
+        TimeRemainingColumn(),
+    )
     outcomes: list[Outcome] = []
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("", total=seconds * len(chosen), found=0)
         for turn, target in enumerate(chosen):
             progress.update(task, description=target.name)
-            outcome = fuzzed(target, seconds, folder, lambda over, turn=turn: progress.update(task, completed=turn * seconds + over))  # type: ignore[misc]
+            outcome = fuzzed(
+                target, seconds, folder, lambda over, turn=turn: progress.update(task, completed=turn * seconds + over)
+            )  # type: ignore[misc]
             outcomes.append(outcome)
             progress.update(task, found=sum(len(one.findings) for one in outcomes))
             if not console.is_terminal:
-                console.print(f"{outcome.target}: {outcome.executions} executions, {outcome.edges} edges, {len(outcome.findings)} findings")
+                console.print(
+                    f"{outcome.target}: {outcome.executions} executions, {outcome.edges} edges, {len(outcome.findings)} findings"
+                )
     console.print(shown(outcomes))
     found = [path for outcome in outcomes for path in outcome.findings]
     for path in found:

@@ -77,7 +77,13 @@ def _run(target: Target, seconds: int, folder: Path, corpus: Path, tick: Callabl
         words = Path(place) / "words"
         words.write_text("".join(f'"{_escaped(word)}"\n' for word in target.words if word), encoding="ascii")
         log = Path(place) / "log"
-        arguments = [f"-max_total_time={seconds}", f"-artifact_prefix={place}/", f"-dict={words}", *_LIMITS, str(corpus)]
+        arguments = [
+            f"-max_total_time={seconds}",
+            f"-artifact_prefix={place}/",
+            f"-dict={words}",
+            *_LIMITS,
+            str(corpus),
+        ]
         environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "TMPDIR": place}
         command = [sys.executable, "-m", "proofs_tests.fuzzing.child", target.name, str(folder), *arguments]
         with log.open("wb") as stream:
@@ -92,7 +98,11 @@ def _run(target: Target, seconds: int, folder: Path, corpus: Path, tick: Callabl
         for artifact in sorted(Path(place).glob("*-*")):
             kind = artifact.name.partition("-")[0]
             breach = Breach(kind, "the process", said[-300:])
-            if artifact.is_file() and kind in ("crash", "timeout", "oom") and breach.signature not in known(folder, target.name):
+            if (
+                artifact.is_file()
+                and kind in ("crash", "timeout", "oom")
+                and breach.signature not in known(folder, target.name)
+            ):
                 written(folder, target.name, artifact.read_bytes(), breach)
         return said
 
