@@ -2,13 +2,12 @@
 
 import io
 import struct
-import time
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
-from proofs_tests.fuzzing.judging import judged
+from proofs_tests.fuzzing.judging import judged, limited
 from proofs_tests.fuzzing.targets import TARGETS
 
 from exactmesh import PSLG
@@ -39,11 +38,9 @@ class TestFound:
 
     def test_stl_that_claims_a_billion_triangles(self, tmp_path: Path) -> None:
         """MemoryError: 29.9 GiB for a file of 90 bytes, where that much cannot be had."""
-        data = b"\x16" + b"0" * 80 + struct.pack("<I", 1145980164) + b"0" * 7
-        assert judged(TARGETS["foreign"], data) is None
         path = tmp_path / "a.stl"
-        path.write_bytes(data[1:])
-        with pytest.raises(FileFormatError, match=r"a\.stl: meshio"):
+        path.write_bytes(b"0" * 80 + struct.pack("<I", 1145980164) + b"0" * 7)
+        with limited(), pytest.raises(FileFormatError, match=r"a\.stl: meshio asks for more memory than there is"):
             given_mesh(path)
 
     @pytest.mark.parametrize("triangles", [3, 40, 4000])
@@ -51,10 +48,8 @@ class TestFound:
         """A broken TIN of n triangles took meshio's pattern c^n steps: three triangles two seconds, forty for ever."""
         path = tmp_path / "a.wkt"
         path.write_text("TIN (" + "((0.0 0.0 0.0, 1.0 0.0 0.0, 0.0 1.0 0.0, 0.0 0.0 0.0)), " * triangles + "((0.0")
-        start = time.process_time()
-        with pytest.raises(FileFormatError, match=r"a\.wkt: is no TIN"):
+        with limited(), pytest.raises(FileFormatError, match=r"a\.wkt: is no TIN"):
             given_mesh(path)
-        assert time.process_time() - start < 60
 
     def test_control_a_sound_wkt_is_read(self, tmp_path: Path) -> None:
         """The check of the text refuses no TIN that meshio reads."""

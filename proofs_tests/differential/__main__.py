@@ -30,7 +30,12 @@ def shown(inputs: Counter[str], found: list[Disagreement]) -> Table:
 def collected(seed: int, inputs: int, processes: int, console: Console) -> Portion:
     """Compare the inputs; an interrupt ends it with what there is."""
     whole, told = Portion(), time.monotonic()
-    columns = (TextColumn("{task.fields[found]} disagreements"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.fields[found]} disagreements"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task("", total=inputs, found=0)
         try:

@@ -127,9 +127,7 @@ def _of_edges(mesh: Triangulation, table: Table, fixed: set[tuple[int, int]]) ->
         yield f"constrained edges are {sorted(found)}, pieces of segments {sorted(fixed)}, by ranks"
 
 
-def _of_domain(
-    graph: PSLG, table: Table, hull: set[Triangle], pieces: list[list[tuple[int, int]]]
-) -> Iterator[str]:
+def _of_domain(graph: PSLG, table: Table, hull: set[Triangle], pieces: list[list[tuple[int, int]]]) -> Iterator[str]:
     dug = {
         t
         for t in hull

@@ -9,7 +9,7 @@ from hypothesis.errors import HypothesisDeprecationWarning, UnsatisfiedAssumptio
 from hypothesis.strategies import SearchStrategy
 
 from exactkernel.types import FloatArray
-from exactmesh import PSLG, strategies
+from exactmesh import PSLG, Carve, strategies
 from exactmesh.strategies import Corrupted, PlainMesh
 from proofs_tests.differential.drawing import Drawer
 
@@ -29,6 +29,11 @@ _GRAPHS = (
 )
 
 
+def _without_seeds(graph: PSLG) -> PSLG:
+    """Leave it to even-odd which rings are holes."""
+    return PSLG(graph.points, graph.segments, rule=Carve.EVEN_ODD)
+
+
 def _made() -> dict[str, Callable[[], SearchStrategy[Given]]]:
     families: dict[str, Callable[[], SearchStrategy[Given]]] = {}
     for points in _POINTS:
@@ -36,6 +41,7 @@ def _made() -> dict[str, Callable[[], SearchStrategy[Given]]]:
     for graphs in _GRAPHS:
         families[graphs.__name__] = lambda graphs=graphs: graphs(max_size=_MOST)  # type: ignore[misc]  # as above
     families["polygons_with_holes"] = lambda: strategies.polygons_with_holes(max_size=10)
+    families["rings_in_rings"] = lambda: strategies.polygons_with_holes(max_size=10).map(_without_seeds)
     families["triangulations"] = lambda: strategies.triangulations(max_size=_MOST)
     families["corrupted_triangulations"] = lambda: strategies.corrupted_triangulations(max_size=_MOST - 1)
     return families

@@ -78,9 +78,7 @@ class Judge:
         return len(starts) <= 1 and steps == len(opposite)
 
     def geometric(self) -> dict[Property, bool]:
-        is_admissible = self.is_solid and all(
-            self._meet(s, t) for s, t in combinations(range(len(self.triangles)), 2)
-        )
+        is_admissible = self.is_solid and all(self._meet(s, t) for s, t in combinations(range(len(self.triangles)), 2))
         largest = [self._largest_angle(t) for t in self.ranks]
         return {
             Property.ORIENTATION: all(area > 0 for area in self.areas),

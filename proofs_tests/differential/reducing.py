@@ -29,10 +29,14 @@ def _smaller(given: Given) -> Iterator[Given]:
     if isinstance(given, PSLG):
         yield from _smaller_graphs(given)
     elif isinstance(given, PlainMesh):
-        yield from (given._replace(triangles=np.delete(given.triangles, i, axis=0)) for i in range(len(given.triangles)))
+        yield from (
+            given._replace(triangles=np.delete(given.triangles, i, axis=0)) for i in range(len(given.triangles))
+        )
     elif isinstance(given, Corrupted):
         if given.labels is None:
-            yield from (replace(given, triangles=np.delete(given.triangles, i, axis=0)) for i in range(len(given.triangles)))
+            yield from (
+                replace(given, triangles=np.delete(given.triangles, i, axis=0)) for i in range(len(given.triangles))
+            )
     else:
         yield from (np.delete(given, i, axis=0) for i in range(len(given)))
 

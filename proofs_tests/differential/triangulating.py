@@ -6,7 +6,16 @@ from itertools import combinations, pairwise
 
 from proofs_tests.differential.table import Table
 
-__all__ = ["Edge", "Triangle", "constrained", "counterclockwise", "crossing_segments", "delaunay", "domain", "pieces_of"]
+__all__ = [
+    "Edge",
+    "Triangle",
+    "constrained",
+    "counterclockwise",
+    "crossing_segments",
+    "delaunay",
+    "domain",
+    "pieces_of",
+]
 
 Edge = tuple[int, int]  # the smaller rank first
 Triangle = tuple[int, int, int]  # ranks in increasing order

@@ -30,14 +30,21 @@ def shown(outcomes: list[Outcome]) -> Table:
 
 def run(chosen: list[Target], seconds: float, folder: Path, console: Console) -> list[Outcome]:
     """Fuzz the targets one after another, each for so long."""
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[found]} found"), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[found]} found"),
+        TimeRemainingColumn(),
+    )
     outcomes: list[Outcome] = []
     with Progress(*columns, console=console) as progress, Campaign(folder) as campaign:
         task = progress.add_task("", total=seconds * len(chosen), found=0)
         for turn, target in enumerate(chosen):
             progress.update(task, description=target.name)
             before = turn * seconds
-            outcome = campaign.fuzzed(target, seconds, lambda over, before=before: progress.update(task, completed=before + over))  # type: ignore[misc]  # a default binds it
+            outcome = campaign.fuzzed(
+                target, seconds, lambda over, before=before: progress.update(task, completed=before + over)
+            )  # type: ignore[misc]  # a default binds it
             outcomes.append(outcome)
             progress.update(task, found=sum(len(one.findings) for one in outcomes))
             if not console.is_terminal:
@@ -47,9 +54,13 @@ def run(chosen: list[Target], seconds: float, folder: Path, console: Console) ->
 
 
 def main(
-    targets: Annotated[list[str] | None, typer.Argument(metavar="[TARGET ...]", help=f"Some of {', '.join(TARGETS)}.")] = None,
+    targets: Annotated[
+        list[str] | None, typer.Argument(metavar="[TARGET ...]", help=f"Some of {', '.join(TARGETS)}.")
+    ] = None,
     minutes: Annotated[float, typer.Option(min=0.05, help="For all targets together, one after another.")] = 5.0,
-    folder: Annotated[Path, typer.Option(help="Where findings go, and inputs that reached new lines.")] = Path(".fuzzing"),
+    folder: Annotated[Path, typer.Option(help="Where findings go, and inputs that reached new lines.")] = Path(
+        ".fuzzing"
+    ),
 ) -> None:
     """Look for inputs that break the law of the readers: a right result, or a typed error. Exit code 1 if there are."""
     console = Console()

@@ -103,7 +103,13 @@ class Campaign:
             place = Path(name)
             words, log = place / "words", place / "log"
             words.write_text("".join(f'"{_escaped(word)}"\n' for word in target.words if word), encoding="ascii")
-            given = [f"-max_total_time={seconds}", f"-artifact_prefix={place}/", f"-dict={words}", *_LIMITS, str(corpus)]
+            given = [
+                f"-max_total_time={seconds}",
+                f"-artifact_prefix={place}/",
+                f"-dict={words}",
+                *_LIMITS,
+                str(corpus),
+            ]
             assert self._nursery.stdin is not None
             self._nursery.stdin.write(json.dumps([target.name, str(self.folder), str(log), given]).encode() + b"\n")
             self._nursery.stdin.flush()

@@ -68,7 +68,9 @@ class Cursor:
         if form < 224:
             width = self.count(5)
             with np.errstate(all="ignore"):
-                shaped: npt.NDArray[np.generic] = self.numbers(rows, width).astype(_DTYPES[self.count(len(_DTYPES) - 1)])
+                shaped: npt.NDArray[np.generic] = self.numbers(rows, width).astype(
+                    _DTYPES[self.count(len(_DTYPES) - 1)]
+                )
             return shaped
         return self.thing()
 

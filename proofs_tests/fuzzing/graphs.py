@@ -56,7 +56,9 @@ def _rings(data: bytes) -> None:
     graph = PSLG.from_rings(rings)  # type: ignore[arg-type]  # arrays, and what people take for arrays
     again = PSLG.from_rings(graph.rings())
     found = zip(graph.rings(), again.rings(), strict=True)
-    require(all(same(ring, other) for ring, other in found), f"the rings of {graph!r} are others when they are read again")
+    require(
+        all(same(ring, other) for ring, other in found), f"the rings of {graph!r} are others when they are read again"
+    )
     try:
         snapped = graph.snapped(1 + cursor.count(51))
     except ExactMeshError:

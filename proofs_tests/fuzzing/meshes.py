@@ -55,8 +55,15 @@ def _verify(data: bytes) -> None:
 
 def _verify_seeds() -> list[bytes]:
     mesh = table_bytes(_SQUARE, integers=False) + table_bytes(_HALVES, integers=True)
-    quad = table_bytes(_SQUARE[:4], integers=False) + table_bytes([], integers=True) + table_bytes([(0, 1, 2, 3)], integers=True)
-    segments, labels = table_bytes([(0, 1), (1, 2)], integers=True), table_bytes([(1,), (1,), (1,), (1,)], integers=False)
+    quad = (
+        table_bytes(_SQUARE[:4], integers=False)
+        + table_bytes([], integers=True)
+        + table_bytes([(0, 1, 2, 3)], integers=True)
+    )
+    segments, labels = (
+        table_bytes([(0, 1), (1, 2)], integers=True),
+        table_bytes([(1,), (1,), (1,), (1,)], integers=False),
+    )
     bound = bytes([96 + 30])
     return [
         b"\0\0" + mesh,
@@ -113,7 +120,9 @@ def _dictionary_seeds() -> list[bytes]:
         dictionary_bytes("", vertices=box),
         dictionary_bytes("pq", vertices=box, segments=ring),
         dictionary_bytes("pqaA", vertices=box, segments=ring, regions=[(1, 1, 5, 1)]),
-        dictionary_bytes("pen", vertices=_SQUARE, segments=ring, holes=[(1, 1)], vertex_markers=[[1], [2], [3], [4], [5]]),
+        dictionary_bytes(
+            "pen", vertices=_SQUARE, segments=ring, holes=[(1, 1)], vertex_markers=[[1], [2], [3], [4], [5]]
+        ),
         dictionary_bytes("ra", vertices=_SQUARE, triangles=_HALVES, triangle_max_area=[[1], [1], [0], [1]]),
         dictionary_bytes("cD", vertices=_SQUARE, vertex_attributes=[[1], [2], [3], [4], [5]]),
     ]
@@ -197,7 +206,14 @@ def _object_seeds() -> list[bytes]:
     named = b"\1\0" + points + b"\0" + cells + b"\xff"
     own = b"\3\1" + b"\0" * 6 + points + cells
     bare = points[1:] + cells[1:] + b"\3"
-    return [plain, named, b"\2" + bytes([mask & 255, mask >> 8]) + points + cells, own, b"\4" + bare, b"\5\0" + points + b"\1\0" + cells]
+    return [
+        plain,
+        named,
+        b"\2" + bytes([mask & 255, mask >> 8]) + points + cells,
+        own,
+        b"\4" + bare,
+        b"\5\0" + points + b"\1\0" + cells,
+    ]
 
 
 def _shapes(data: bytes) -> None:
@@ -228,7 +244,11 @@ def _shape_seeds() -> list[bytes]:
 
     corners = [shapely.Polygon([_SQUARE[v] for v in t]) for t in _HALVES]
     holed = shapely.box(0, 0, 9, 9).difference(shapely.box(2, 2, 3, 3))
-    more = [shapely.Point(1, 2), shapely.LineString([(0, 0), (1, 1)]), shapely.Polygon([(0, 0, 1), (1, 0, 1), (0, 1, 1)])]
+    more = [
+        shapely.Point(1, 2),
+        shapely.LineString([(0, 0), (1, 1)]),
+        shapely.Polygon([(0, 0, 1), (1, 0, 1), (0, 1, 1)]),
+    ]
     single = [shapely.GeometryCollection(corners), shapely.MultiPolygon(corners[:1]), holed, *more]
     return [shapely.to_wkb(shape) for shape in itertools.chain(single, [shapely.Polygon()])]
 

@@ -134,15 +134,44 @@ def _literal(data: bytes) -> None:
         require(same(given.segments, again.segments), "its segments are read again as others")
 
 
-_LITERALS = (b"[(0, 0), (1, 0), (0, 1)]", b"([(0, 0), (1, 0.5), (0, 1)], [(0, 1), (1, 2)])", b"corpus:1", b"[(-1e308, 5e-324)]")
+_LITERALS = (
+    b"[(0, 0), (1, 0), (0, 1)]",
+    b"([(0, 0), (1, 0.5), (0, 1)], [(0, 1), (1, 2)])",
+    b"corpus:1",
+    b"[(-1e308, 5e-324)]",
+)
 _JSON_WORDS = (
     *(b'{"type": "', b'"coordinates": [', b"[[0, 0], [1, 0], [0, 1], [0, 0]]", b"null", b"true", b"1e999", b"-0.0"),
-    *(b"NaN", b"Infinity", b'"features": [', b'"geometry": ', b'"geometries": [', b"\\ud800", b"]}", *(k.encode() for k in _KINDS)),
+    *(
+        b"NaN",
+        b"Infinity",
+        b'"features": [',
+        b'"geometry": ',
+        b'"geometries": [',
+        b"\\ud800",
+        b"]}",
+        *(k.encode() for k in _KINDS),
+    ),
 )
 TARGETS = (
     Target("geojson", _geojson, _geojson_seeds, _JSON_WORDS),
     Target("features", _features, lambda: [bytes([k, 4, 0, 3, *range(90, 120)]) for k in range(len(_KINDS) + 1)]),
-    Target("certificate", _certificate, _certificate_seeds, (b'"verdict": "holds"', b'"claims": [', b"null", b"true", b"false", b"1e400")),
-    Target("switches", _switches, lambda: [b"pq30a0.1e", b"-pa", b"rqS100YYo2", b"pDLs", b"q", b"pA"], tuple(s.encode() for s in Switch)),
-    Target("literal", _literal, lambda: _LITERALS, (b"(0, 0), ", b"[", b"]", b"(", b")", b"1e400", b"0x10", b"b''", b"{", b"None")),
+    Target(
+        "certificate",
+        _certificate,
+        _certificate_seeds,
+        (b'"verdict": "holds"', b'"claims": [', b"null", b"true", b"false", b"1e400"),
+    ),
+    Target(
+        "switches",
+        _switches,
+        lambda: [b"pq30a0.1e", b"-pa", b"rqS100YYo2", b"pDLs", b"q", b"pA"],
+        tuple(s.encode() for s in Switch),
+    ),
+    Target(
+        "literal",
+        _literal,
+        lambda: _LITERALS,
+        (b"(0, 0), ", b"[", b"]", b"(", b")", b"1e400", b"0x10", b"b''", b"{", b"None"),
+    ),
 )

@@ -15,7 +15,20 @@ from proofs_tests.fuzzing.sameness import require_same_dictionaries, require_sam
 
 __all__ = ["TARGETS"]
 
-_WORDS = (b"0 2 0 0\n", b"1 0", b"-1", b"\n", b"#", b"1e308", b"5e-324", b"9999999999", b"nan", b"inf", b"1.5e-3", b"\r\n")
+_WORDS = (
+    b"0 2 0 0\n",
+    b"1 0",
+    b"-1",
+    b"\n",
+    b"#",
+    b"1e308",
+    b"5e-324",
+    b"9999999999",
+    b"nan",
+    b"inf",
+    b"1.5e-3",
+    b"\r\n",
+)
 _KINDS = ("node", "ele", "poly", "neigh", "edge", "area")
 _BETWEEN = b"\n%%\n"
 _SQUARE = PSLG(
@@ -129,7 +142,9 @@ def _siblings(data: bytes) -> None:
     if found is not None and strings:
         require_same_dictionaries(found, loads(**strings))
     if texts:
-        _read_and_write(stem.with_suffix(f".{next(iter(texts))}") if "node" not in texts else stem.with_suffix(".node"), "")
+        _read_and_write(
+            stem.with_suffix(f".{next(iter(texts))}") if "node" not in texts else stem.with_suffix(".node"), ""
+        )
 
 
 def _loaded(stem: Path) -> TriangleDict | None:
