@@ -13,7 +13,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from exactmesh.errors import ExactMeshError
-from proofs_tests.fuzzing.campaign import Outcome, fuzzed, require_atheris
+from proofs_tests.fuzzing.campaign import Campaign, Outcome, require_atheris
+from proofs_tests.fuzzing.judging import Target
 from proofs_tests.fuzzing.targets import TARGETS, target_named
 
 
@@ -25,6 +26,31 @@ def shown(outcomes: list[Outcome]) -> Table:
         row = [str(one.executions), rate, str(one.edges), str(one.corpus), str(len(one.findings))]
         table.add_row(one.target, *row)
     return table
+
+
+def run(chosen: list[Target], seconds: float, folder: Path, console: Console) -> list[Outcome]:
+    """Fuzz the targets one after another, each for so long."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[found]} found"),
+        TimeRemainingColumn(),
+    )
+    outcomes: list[Outcome] = []
+    with Progress(*columns, console=console) as progress, Campaign(folder) as campaign:
+        task = progress.add_task("", total=seconds * len(chosen), found=0)
+        for turn, target in enumerate(chosen):
+            progress.update(task, description=target.name)
+            before = turn * seconds
+            outcome = campaign.fuzzed(
+                target, seconds, lambda over, before=before: progress.update(task, completed=before + over)
+            )  # type: ignore[misc]  # a default binds it
+            outcomes.append(outcome)
+            progress.update(task, found=sum(len(one.findings) for one in outcomes))
+            if not console.is_terminal:
+                told = f"{outcome.executions} executions, {outcome.edges} edges, {len(outcome.findings)} findings"
+                console.print(f"{outcome.target}: {told}")
+    return outcomes
 
 
 def main(
@@ -45,27 +71,7 @@ def main(
         console.print(str(error), markup=False, soft_wrap=True)
         raise typer.Exit(2) from None
     folder.mkdir(parents=True, exist_ok=True)
-    seconds = 60.0 * minutes / len(chosen)
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[found]} found"),
-        TimeRemainingColumn(),
-    )
-    outcomes: list[Outcome] = []
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task("", total=seconds * len(chosen), found=0)
-        for turn, target in enumerate(chosen):
-            progress.update(task, description=target.name)
-            outcome = fuzzed(
-                target, seconds, folder, lambda over, turn=turn: progress.update(task, completed=turn * seconds + over)
-            )  # type: ignore[misc]
-            outcomes.append(outcome)
-            progress.update(task, found=sum(len(one.findings) for one in outcomes))
-            if not console.is_terminal:
-                console.print(
-                    f"{outcome.target}: {outcome.executions} executions, {outcome.edges} edges, {len(outcome.findings)} findings"
-                )
+    outcomes = run(chosen, 60.0 * minutes / len(chosen), folder, console)
     console.print(shown(outcomes))
     found = [path for outcome in outcomes for path in outcome.findings]
     for path in found:

@@ -1,8 +1,10 @@
-"""Targets one after another, each in processes of its own, until its time is up."""
+"""Targets one after another, until the time of each is up."""
 
 import importlib.util
+import json
 import os
 import re
+import select
 import subprocess
 import sys
 import tempfile
@@ -10,16 +12,18 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 from exactmesh.errors import ExactMeshError
 from proofs_tests.fuzzing.findings import known, written
 from proofs_tests.fuzzing.judging import Breach, Target
 
-__all__ = ["AtherisUnavailableError", "Outcome", "fuzzed", "require_atheris"]
+__all__ = ["AtherisUnavailableError", "Campaign", "Outcome", "require_atheris"]
 
 _STATUS = re.compile(r"^#(\d+)\s.*\bcov: (\d+) ft: (\d+) corp: (\d+)", re.MULTILINE)
 _RESTARTS = 20
-_LIMITS = ("-timeout=60", "-rss_limit_mb=4000", "-print_final_stats=1", "-max_len=4096", "-verbosity=1")
+_LIMITS = ("-timeout=120", "-rss_limit_mb=4000", "-print_final_stats=1", "-max_len=4096")
 
 
 class AtherisUnavailableError(ExactMeshError, ImportError):
@@ -48,63 +52,84 @@ def require_atheris() -> None:
         raise AtherisUnavailableError("fuzzing needs atheris, which is not installed: pip install 'exactmesh[fuzz]'")
 
 
-def fuzzed(target: Target, seconds: float, folder: Path, tick: Callable[[float], None]) -> Outcome:
-    """Fuzz one target for so long; ``tick`` is told how much of the time is over."""
-    corpus = folder / "corpus" / target.name
-    corpus.mkdir(parents=True, exist_ok=True)
-    for number, seed in enumerate(target.seeds()):
-        (corpus / f"seed-{number}").write_bytes(seed)
-    before = set(folder.glob(f"{target.name}-*.bin"))
-    start, executions, edges, kept = time.monotonic(), 0, 0, 0
-    for _ in range(_RESTARTS):
-        left = seconds - (time.monotonic() - start)
-        if left < 1:
-            break
-        log = _run(target, int(left), folder, corpus, lambda: tick(min(time.monotonic() - start, seconds)))
-        rows = _STATUS.findall(log)
-        if not rows:
-            raise RuntimeError(f"libFuzzer did not run: {log[-2000:]}")
-        executions += int(rows[-1][0])
-        edges, kept = max(edges, int(rows[-1][1])), int(rows[-1][3])
-    findings = tuple(sorted(set(folder.glob(f"{target.name}-*.bin")) - before))
-    return Outcome(target.name, executions, edges, kept, time.monotonic() - start, findings)
+class Campaign:
+    """A process in which targets run, and the folder where findings go."""
 
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        memory = Path("/dev/shm")
+        self._place = tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None)
+        environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "TMPDIR": self._place.name}
+        command = [sys.executable, "-m", "proofs_tests.fuzzing.nursery"]
+        pipe, nothing = subprocess.PIPE, subprocess.DEVNULL
+        self._nursery = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=nothing, env=environment)
+        self._wait(lambda: None)
 
-def _run(target: Target, seconds: int, folder: Path, corpus: Path, tick: Callable[[], None]) -> str:
-    """Run libFuzzer once; if that ends by a crash, write the input down as a finding. Return what it said."""
-    memory = Path("/dev/shm")
-    with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as place:
-        words = Path(place) / "words"
-        words.write_text("".join(f'"{_escaped(word)}"\n' for word in target.words if word), encoding="ascii")
-        log = Path(place) / "log"
-        arguments = [
-            f"-max_total_time={seconds}",
-            f"-artifact_prefix={place}/",
-            f"-dict={words}",
-            *_LIMITS,
-            str(corpus),
-        ]
-        environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "TMPDIR": place}
-        command = [sys.executable, "-m", "proofs_tests.fuzzing.child", target.name, str(folder), *arguments]
-        with log.open("wb") as stream:
-            child = subprocess.Popen(command, stdout=stream, stderr=stream, env=environment)
-            try:
-                while child.poll() is None:
-                    time.sleep(0.2)
-                    tick()
-            finally:
-                child.kill()
-        said = log.read_text(encoding="utf-8", errors="replace")
-        for artifact in sorted(Path(place).glob("*-*")):
-            kind = artifact.name.partition("-")[0]
-            breach = Breach(kind, "the process", said[-300:])
-            if (
-                artifact.is_file()
-                and kind in ("crash", "timeout", "oom")
-                and breach.signature not in known(folder, target.name)
-            ):
-                written(folder, target.name, artifact.read_bytes(), breach)
-        return said
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        assert self._nursery.stdin is not None
+        if error is not None:
+            self._nursery.kill()
+        self._nursery.stdin.close()
+        self._nursery.wait()
+        self._place.cleanup()
+
+    def fuzzed(self, target: Target, seconds: float, tick: Callable[[float], None]) -> Outcome:
+        """Fuzz one target for so long; ``tick`` is told how much of the time is over."""
+        corpus = self.folder / "corpus" / target.name
+        corpus.mkdir(parents=True, exist_ok=True)
+        for number, seed in enumerate(target.seeds()):
+            (corpus / f"seed-{number}").write_bytes(seed)
+        before = set(self.folder.glob(f"{target.name}-*.bin"))
+        start, executions, edges, kept = time.monotonic(), 0, 0, 0
+        for _ in range(_RESTARTS):
+            left = seconds - (time.monotonic() - start)
+            if left < 1:
+                break
+            log = self._run(target, int(left), corpus, lambda: tick(min(time.monotonic() - start, seconds)))
+            rows = _STATUS.findall(log)
+            if not rows:
+                break
+            executions += int(rows[-1][0])
+            edges, kept = max(edges, int(rows[-1][1])), int(rows[-1][3])
+        findings = tuple(sorted(set(self.folder.glob(f"{target.name}-*.bin")) - before))
+        return Outcome(target.name, executions, edges, kept, time.monotonic() - start, findings)
+
+    def _run(self, target: Target, seconds: int, corpus: Path, tick: Callable[[], None]) -> str:
+        """Run libFuzzer once; if that ends by a crash, write the input down as a finding. Return what it said."""
+        with tempfile.TemporaryDirectory(dir=self._place.name) as name:
+            place = Path(name)
+            words, log = place / "words", place / "log"
+            words.write_text("".join(f'"{_escaped(word)}"\n' for word in target.words if word), encoding="ascii")
+            given = [
+                f"-max_total_time={seconds}",
+                f"-artifact_prefix={place}/",
+                f"-dict={words}",
+                *_LIMITS,
+                str(corpus),
+            ]
+            assert self._nursery.stdin is not None
+            self._nursery.stdin.write(json.dumps([target.name, str(self.folder), str(log), given]).encode() + b"\n")
+            self._nursery.stdin.flush()
+            self._wait(tick)
+            said = log.read_text(encoding="utf-8", errors="replace")
+            for artifact in sorted(place.glob("*-*")):
+                kind = artifact.name.partition("-")[0]
+                breach = Breach(kind, "the process", said[-300:])
+                if kind in ("crash", "timeout", "oom") and breach.signature not in known(self.folder, target.name):
+                    written(self.folder, target.name, artifact.read_bytes(), breach)
+            return said
+
+    def _wait(self, tick: Callable[[], None]) -> None:
+        """Wait for a line of the process."""
+        answers = self._nursery.stdout
+        assert answers is not None
+        while not select.select([answers], [], [], 0.2)[0]:
+            tick()
+        if not answers.readline():
+            raise RuntimeError("the process of the targets has ended: try python -m proofs_tests.fuzzing.nursery")
 
 
 def _escaped(word: bytes) -> str:

@@ -1,33 +1,33 @@
 """A folder for the files that readers are given."""
 
-import atexit
 import functools
+import os
 import tempfile
 from pathlib import Path
 
 from exactmesh.errors import FileFormatError, PSLGError
 from proofs_tests.fuzzing.judging import require
 
-__all__ = ["STEM", "clean", "folder", "names_its_file"]
+__all__ = ["STEM", "clean", "names_its_file"]
 
 STEM = "given"
 
 
 @functools.cache
-def folder() -> Path:
-    """Return a folder of this process."""
-    made = tempfile.TemporaryDirectory(prefix="fuzzing")
-    atexit.register(made.cleanup)
-    return Path(made.name)
+def _folder(process: int) -> tuple[Path, tempfile.TemporaryDirectory[str]]:
+    """Return a folder of the process, and what removes it in the end."""
+    made = tempfile.TemporaryDirectory(prefix=f"fuzzing-{process}-")
+    return Path(made.name), made
 
 
 def clean(**contents: bytes) -> Path:
     """Empty the folder, put files ``given.node`` and so on into it, and return their path without suffix."""
-    for old in folder().iterdir():
+    folder = _folder(os.getpid())[0]
+    for old in folder.iterdir():
         old.unlink()
     for suffix, content in contents.items():
-        (folder() / f"{STEM}.{suffix}").write_bytes(content)
-    return folder() / STEM
+        (folder / f"{STEM}.{suffix}").write_bytes(content)
+    return folder / STEM
 
 
 def names_its_file(error: FileFormatError | PSLGError) -> None:

@@ -23,4 +23,6 @@ def require_tin(path: str) -> None:
     """
     text = read_bytes(path).decode("utf-8", errors="replace")
     if _TIN.match(text) is None:
-        raise FileFormatError("is no TIN ((( x y z, x y z, x y z, x y z )), ...) in numbers without exponents", path=path)
+        raise FileFormatError(
+            "is no TIN ((( x y z, x y z, x y z, x y z )), ...) in numbers without exponents", path=path
+        )

@@ -1,0 +1,66 @@
+"""What fuzzing found, by name, with the bytes."""
+
+import io
+import struct
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from proofs_tests.fuzzing.judging import judged, limited
+from proofs_tests.fuzzing.targets import TARGETS
+
+from exactmesh import PSLG
+from exactmesh.adapters import given_mesh
+from exactmesh.errors import FileFormatError, GeometryError
+from exactmesh.io import read
+
+
+@pytest.mark.obligation("F2", "what fuzzing found stays fixed", method="named cases")
+class TestFound:
+    """Inputs that once broke the law: each is refused by a typed error that says why, at once."""
+
+    def test_npz_header_with_an_open_bracket(self, tmp_path: Path) -> None:
+        """tokenize.TokenError came out of numpy's parser of headers."""
+        text = b"{" + b" " * 117
+        member = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text
+        path = tmp_path / "a.npz"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("points.npy", member)
+        with pytest.raises(FileFormatError, match=r"a\.npz: is no readable \.npz archive"):
+            read(path)
+
+    @pytest.mark.parametrize("kind", [np.array([1, 2]), np.array(["Point", "Polygon"]), ["Feature"], None, 3])
+    def test_geojson_type_that_is_an_array(self, kind: object) -> None:
+        """ValueError: the truth value of an array is ambiguous."""
+        with pytest.raises(GeometryError, match="type is .*, no type of GeoJSON"):
+            PSLG.from_geojson({"type": kind})
+
+    def test_stl_that_claims_a_billion_triangles(self, tmp_path: Path) -> None:
+        """MemoryError: 29.9 GiB for a file of 90 bytes, where that much cannot be had."""
+        path = tmp_path / "a.stl"
+        path.write_bytes(b"0" * 80 + struct.pack("<I", 1145980164) + b"0" * 7)
+        with limited(), pytest.raises(FileFormatError, match=r"a\.stl: meshio asks for more memory than there is"):
+            given_mesh(path)
+
+    @pytest.mark.parametrize("triangles", [3, 40, 4000])
+    def test_wkt_that_breaks_off(self, tmp_path: Path, triangles: int) -> None:
+        """A broken TIN of n triangles took meshio's pattern c^n steps: three triangles two seconds, forty for ever."""
+        path = tmp_path / "a.wkt"
+        path.write_text("TIN (" + "((0.0 0.0 0.0, 1.0 0.0 0.0, 0.0 1.0 0.0, 0.0 0.0 0.0)), " * triangles + "((0.0")
+        with limited(), pytest.raises(FileFormatError, match=r"a\.wkt: is no TIN"):
+            given_mesh(path)
+
+    def test_control_a_sound_wkt_is_read(self, tmp_path: Path) -> None:
+        """The check of the text refuses no TIN that meshio reads."""
+        path = tmp_path / "a.wkt"
+        corners = ("0 0 0", "1 0 0.", "+1.5 1 -.0", "0 1 0")
+        rings = [(corners[0], corners[1], corners[2], corners[0]), (corners[0], corners[2], corners[3], corners[0])]
+        path.write_text("  TIN (" + " , ".join(f"( (  {' , '.join(ring)} ) )" for ring in rings) + " )\n")
+        assert given_mesh(path).triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+    def test_control_what_is_cut_off_is_an_archive_no_more(self) -> None:
+        """An archive of the same kind that is sound is read."""
+        stream = io.BytesIO()
+        np.savez(stream, points=np.zeros((1, 2)))
+        assert judged(TARGETS["npz"], stream.getvalue()) is None
