@@ -35,7 +35,7 @@ __all__ = [
 ORIENT2D_ROW = 0
 INCIRCLE_ROW = 1
 
-SCRATCH_SIZE = 4352
+SCRATCH_SIZE = 4192  # what incircle_expansion uses
 
 
 class Context(NamedTuple):
