@@ -17,9 +17,9 @@ from exactkernel.constants import (
     MIN_COORDINATE_DEGREE_2,
     MIN_COORDINATE_DEGREE_4,
 )
-from exactkernel.context import guarded_context, make_context
+from exactkernel.context import make_context
 from exactkernel.diametral import diametral_adaptive, diametral_filter
-from exactkernel.incircle import incircle_adaptive, incircle_filter, incircle_perturbed_adaptive
+from exactkernel.incircle import incircle_adaptive, incircle_filter
 from exactkernel.orient2d import orient2d_adaptive, orient2d_filter, products_difference
 
 Filter = Callable[..., int]
@@ -90,6 +90,41 @@ class TestFilterBorder:
                 borders += det != 0 and abs(det) == bound * permanent
                 cases += 1
         assert borders > 20
+        record_property("cases", cases)
+
+
+@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive")
+class TestGridAlone:
+    """With bounds so blunt that the filters certify nothing, the grid stage decides all small integers, exactly; and
+    where it does not know of the grid, incircle finds it, and the others do without."""
+
+    @pytest.mark.parametrize(
+        ("adaptive", "terms", "n", "row"),
+        [
+            (orient2d_adaptive, terms_of_orient2d, 3, 0),
+            (diametral_adaptive, terms_of_diametral, 3, 0),
+            (incircle_adaptive, terms_of_incircle, 4, 1),
+        ],
+    )
+    @pytest.mark.parametrize("is_known", [True, False])
+    def test_signs(
+        self,
+        adaptive: Adaptive,
+        terms: Callable[[list[tuple[int, int]]], list[int]],
+        n: int,
+        row: int,
+        is_known: bool,
+        record_property: Callable[[str, object], None],
+    ) -> None:
+        k = make_context(np.ones(1))._replace(orient2d_bound=1e300, incircle_bound=1e300)
+        if not is_known:
+            k = k._replace(grid_limit=0.0)
+        cases = 0
+        for points in cells(n):
+            assert adaptive(k, *np.ravel(points).astype(float).tolist()) == sign(sum(terms(points)))
+            cases += 1
+        assert (k.counts[row, ek.Stage.GRID] == k.counts.sum() == cases) == (is_known or n == 4)
+        assert not k.counts[:, [ek.Stage.FILTER, ek.Stage.RATIONAL]].any()
         record_property("cases", cases)
 
 

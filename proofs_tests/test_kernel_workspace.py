@@ -37,15 +37,16 @@ class Longest:
         """Write n components into h, by way of the scratch, while the operands are still needed."""
         self.calls += 1
         before = [e[:ne].tolist() for e, ne in operands]
-        for room, used in scratch:
-            assert len(room) >= used, f"{len(room)} doubles of scratch, {used} needed"
-            room[:used] = np.nan
-        assert len(h) >= n, f"room for {len(h)} of {n} components"
-        h[:n] = next(self.marks)
-        for (e, ne), marks in zip(operands, before, strict=True):
+        for marks, (_, ne) in zip(before, operands, strict=True):
             assert len(marks) == ne, "an operand is longer than its room"
             assert len(set(marks)) <= 1, "an operand was overwritten after it was made"
-            assert not np.isnan(marks).any(), "an operand was used as scratch after it was made"
+        written = [(h, n, next(self.marks)), *((room, used, next(self.marks)) for room, used in scratch)]
+        for room, used, mark in written:
+            assert len(room) >= used, f"room for {len(room)} doubles, {used} needed"
+            room[:used] = mark
+        for room, used, mark in written:
+            assert set(room[:used].tolist()) <= {mark}, "result and scratch overlap"
+        for (e, ne), marks in zip(operands, before, strict=True):
             assert e[:ne].tolist() == marks, "an operand lies where the result or the scratch does"
         return n
 
