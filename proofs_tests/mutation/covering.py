@@ -33,11 +33,13 @@ class Covering:
         return cls(lines, {_node(case): float(case.attrib["time"]) for case in cases})
 
     def tests(self, mutant: Mutant) -> list[str]:
-        """Return the tests that run the mutated line, or if it runs on import, all that run a line of the file."""
+        """Return the tests that run the mutated line, or if it runs on import, all that run a line of its folder."""
         lines = self.lines.get(mutant.file, {})
         contexts = set(lines.get(mutant.line, ()))
         if "" in contexts:
-            contexts = {context for there in lines.values() for context in there}
+            folder = Path(mutant.file).parent
+            near = [there for file, there in self.lines.items() if Path(file).parent == folder]
+            contexts = {context for there in near for line in there.values() for context in line}
         files = {context for context in contexts if context.endswith(".py")}
         found = [test for test in self.seconds if test in contexts or test.split("::")[0] in files]
         return sorted(found, key=lambda test: self._cost(mutant, test))

@@ -160,7 +160,9 @@ def try_mutants(
             yield covered[number], outcome
     healthy = _Healthy(lambda test: _forked(lambda: _import_and_try(tree, [test], seconds)))
     for mutant in imported:
-        yield mutant, healthy.outcome(functools.partial(_imported, tree, mutant, seconds), order.best(tests[mutant]))
+        outcome = healthy.outcome(functools.partial(_imported, tree, mutant, seconds), order.best(tests[mutant]))
+        order.kills[outcome[1]] += 1
+        yield mutant, outcome
 
 
 class _Order:
