@@ -79,7 +79,9 @@ class TestIntegerArrays:
             assert doubles_of((v, 0.25)) is None
 
 
-@pytest.mark.obligation("K7", "a refusal names the culprits, five of them at most, and shows the first", method="named cases")
+@pytest.mark.obligation(
+    "K7", "a refusal names the culprits, five of them at most, and shows the first", method="named cases"
+)
 class TestRefusals:
     """Messages and ``indices``, for one to seven culprits in any column."""
 

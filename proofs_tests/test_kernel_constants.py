@@ -18,13 +18,15 @@ SMALLEST = Fraction(1, 2**1074)
 LARGEST = Fraction(2) ** 1023
 
 
-@pytest.mark.obligation("K1", "the constants of the filters are the smallest that are sound, but for u", method="calculus")
+@pytest.mark.obligation(
+    "K1", "the constants of the filters are the smallest that are sound, but for u", method="calculus"
+)
 class TestSharpness:
     """The unit roundoff is half the distance of 1 from the next double. A bound is at least what the calculus of
     rounding errors asks for, and exceeds it by less than a millionth of a millionth."""
 
     def test_unit_roundoff(self) -> None:
-        assert 2.0 * constants.UNIT_ROUNDOFF == math.nextafter(1.0, 2.0) - 1.0
+        assert math.nextafter(1.0, 2.0) - 1.0 == 2.0 * constants.UNIT_ROUNDOFF
 
     @pytest.mark.parametrize(
         ("bound", "last"),
@@ -42,9 +44,7 @@ class TestSharpness:
 class TestWindows:
     """Each end is the last power of two for which the determinant of its degree neither under- nor overflows."""
 
-    @pytest.mark.parametrize(
-        ("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)]
-    )
+    @pytest.mark.parametrize(("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)])
     def test_smallest_units(self, unit: float, degree: int) -> None:
         """A determinant consists of multiples of the unit to the degree, and the smallest double is 2^-1074."""
         assert Fraction(unit) ** degree >= SMALLEST > Fraction(unit / 2) ** degree

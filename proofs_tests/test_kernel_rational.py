@@ -126,9 +126,7 @@ class TestQuestions:
         assert asked == [(41 + i, i, coordinates) for i in range(failures + 1)]
 
     @pytest.mark.parametrize(("name", "ask", "arity"), QUESTIONS)
-    def test_no_answer(
-        self, name: str, ask: Callable[..., int], arity: int, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_no_answer(self, name: str, ask: Callable[..., int], arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
         attempts: list[int] = []
         monkeypatch.setattr(rational, name, lambda _address, _number, attempt, *_: attempts.append(attempt))
         with pytest.raises(RuntimeError, match="at every attempt"):

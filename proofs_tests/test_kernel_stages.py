@@ -19,7 +19,7 @@ from exactkernel.constants import (
 )
 from exactkernel.context import make_context
 from exactkernel.diametral import diametral_adaptive, diametral_filter
-from exactkernel.incircle import incircle_adaptive, incircle_filter
+from exactkernel.incircle import incircle_adaptive, incircle_filter, incircle_perturbed_adaptive
 from exactkernel.orient2d import orient2d_adaptive, orient2d_filter, products_difference
 
 Filter = Callable[..., int]
@@ -192,12 +192,12 @@ class TestGridOfFour:
         (dx, dy) = points[3]
         rows = [(Fraction(x) - Fraction(dx), Fraction(y) - Fraction(dy)) for x, y in points[:3]]
         lifted = [(x, y, x * x + y * y) for x, y in rows]
-        return [
-            oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))
-        ]
+        return [oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))]
 
 
-@pytest.mark.obligation("K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases")
+@pytest.mark.obligation(
+    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
+)
 class TestDoubleDoubleBorder:
     """At the border itself the expansions answer, one step beyond it the double-doubles."""
 
@@ -230,3 +230,37 @@ class TestDoubleDoubleBorder:
         ]:
             corner = (s * size, 0.0) if axis == 0 else (0.0, s * size)
             assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
+
+
+@pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
+class TestTally:
+    """One call, one more of one stage, in the predicate's own row; ties that are broken count as incircle."""
+
+    @pytest.mark.parametrize(
+        ("adaptive", "n", "row"),
+        [
+            (orient2d_adaptive, 3, 0),
+            (diametral_adaptive, 3, 0),
+            (incircle_adaptive, 4, 1),
+            (incircle_perturbed_adaptive, 4, 1),
+        ],
+    )
+    def test_every_call(self, adaptive: Adaptive, n: int, row: int) -> None:
+        clear = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.25, 0.125)]
+        even = (
+            [(0.0, 0.0), (1.0, 1.0), (0.5, 0.5), (0.0, 1.0)]
+            if n == 3
+            else [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+        )
+        if adaptive is diametral_adaptive:
+            even = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0)]
+        k = make_context(np.array([1.0, 0.125]))
+        expected = np.zeros((2, 5), dtype=np.int64)
+        for points, stage, calls in ((clear, ek.Stage.FILTER, 3), (even, ek.Stage.GRID, 2)):
+            for _ in range(calls):
+                adaptive(k, *np.ravel(points[:n]).tolist())
+            expected[row, stage] += calls
+            broken = k.counts - expected  # the orientation that breaks a tie counts as orient2d
+            assert broken[0, 0] == (calls if adaptive is incircle_perturbed_adaptive and stage else 0)
+            broken[0, 0] = 0
+            assert not broken.any()
