@@ -172,6 +172,14 @@ class TestExpansions:
         assert SOUND["product"](e, ne, e, ne, np.zeros(64)) == 0
         record_property("cases", len(e) ** 2)
 
+    def test_nothing_added_changes_nothing(self) -> None:
+        e, ne = expansions(PRECISION, 3, 2)
+        for components, n in zip(e, ne.tolist(), strict=True):
+            h = np.zeros(4)
+            for operands in ((components, n, h, 0), (h.copy(), 0, components, n)):
+                assert expansion_sum(*operands, h) == n
+                assert h[:n].tolist() == components[:n].tolist()
+
     def test_longer_operands(self, record_property: Record) -> None:
         e, ne = expansions(PRECISION, 8 if COMPILED else 5, 3)
         long = ne == 3

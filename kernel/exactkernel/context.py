@@ -35,7 +35,7 @@ __all__ = [
 ORIENT2D_ROW = 0
 INCIRCLE_ROW = 1
 
-SCRATCH_SIZE = 4352
+SCRATCH_SIZE = 4192  # what incircle_expansion uses
 
 
 class Context(NamedTuple):
@@ -140,6 +140,12 @@ def thread_context() -> Context:
     return _PER_THREAD.guarded
 
 
+def _highest_exponent(maximum: float) -> int:
+    """Return the largest exponent whose power of two does not lead coordinates up to maximum beyond the window."""
+    mantissa, exponent = math.frexp(maximum)
+    return 254 - exponent if mantissa == 0.5 else 253 - exponent
+
+
 def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:
     """Return the coordinates times a power of two that brings them into the window, and their context.
 
@@ -148,9 +154,9 @@ def scaled_into_window(coordinates: FloatArray) -> tuple[FloatArray, Context]:
     """
     maximum, unit = bits_of(coordinates)
     context = _context(maximum, unit)
-    if context.incircle_bound < math.inf or maximum == 0.0:
+    if context.incircle_bound < math.inf:
         return coordinates, context
-    exponent = 253 - math.frexp(maximum)[1]
+    exponent = _highest_exponent(maximum)
     largest, smallest = math.ldexp(maximum, exponent), math.ldexp(unit, exponent)
     if smallest < constants.MIN_UNIT_DEGREE_4:
         return coordinates, context
@@ -162,8 +168,8 @@ def exponent_into_window(maximum: float, unit: float) -> int:
 
     They come into the middle of the window, so that there is room for larger and for finer ones to come.
     """
-    if maximum == 0.0 or _context(maximum, unit).incircle_bound < math.inf:
+    if _context(maximum, unit).incircle_bound < math.inf:
         return 0
-    highest = 253 - math.frexp(maximum)[1]
+    highest = _highest_exponent(maximum)
     lowest = math.frexp(constants.MIN_UNIT_DEGREE_4)[1] - math.frexp(unit)[1]
     return (lowest + highest) // 2 if lowest <= highest else 0

@@ -255,33 +255,22 @@ def cofactor(
 def break_tie(
     k: Context, ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> int:
-    """Return the sign of incircle with infinitesimal lifts, the lexicographically smallest point's the largest.
+    """Return the sign of incircle, where it vanishes, with infinitesimal lifts, the smallest point's the largest.
 
-    Four distinct cocircular points have no three collinear, so the first cofactor decides. Only collinear input, which
-    no triangulation asks about, takes more, in lexicographic order. The lift belongs to the point: where two coincide,
-    two rows of the determinant are the same.
+    Four distinct cocircular points have no three collinear, so the cofactor of the lexicographically smallest point
+    decides, or all four are collinear and every cofactor vanishes. The lift belongs to the point: where two coincide,
+    two rows of the determinant are the same; only the smallest point's own cofactor does not say so.
     """
-    if (
-        same(ax, ay, bx, by) or same(ax, ay, cx, cy) or same(ax, ay, dx, dy)
-        or same(bx, by, cx, cy) or same(bx, by, dx, dy) or same(cx, cy, dx, dy)
-    ):  # fmt: skip
+    i, x, y = 0, ax, ay
+    if before(bx, by, x, y):
+        i, x, y = 1, bx, by
+    if before(cx, cy, x, y):
+        i, x, y = 2, cx, cy
+    if before(dx, dy, x, y):
+        i, x, y = 3, dx, dy
+    if same(ax, ay, x, y) + same(bx, by, x, y) + same(cx, cy, x, y) + same(dx, dy, x, y) > 1:
         return 0
-    done = 0  # a bit for each position whose cofactor vanished
-    for _ in range(4):
-        i, x, y = 4, math.inf, math.inf
-        if not done & 1:
-            i, x, y = 0, ax, ay
-        if not done & 2 and (i == 4 or before(bx, by, x, y)):
-            i, x, y = 1, bx, by
-        if not done & 4 and (i == 4 or before(cx, cy, x, y)):
-            i, x, y = 2, cx, cy
-        if not done & 8 and (i == 4 or before(dx, dy, x, y)):
-            i = 3
-        sign = cofactor(k, i, ax, ay, bx, by, cx, cy, dx, dy)
-        if sign != 0:
-            return sign
-        done |= 1 << i
-    return 0
+    return cofactor(k, i, ax, ay, bx, by, cx, cy, dx, dy)
 
 
 @jit
@@ -351,15 +340,13 @@ def incircle(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> Sign:
 
 
 def _perturbed_rational(points: list[RationalPoint]) -> int:
-    if len(set(points)) < 4:
-        return 0
     sign = incircle_rational(points[0], points[1], points[2], points[3])
-    for i in sorted(range(4), key=lambda position: points[position]):
-        if sign != 0:
-            break
-        others = points[:i] + points[i + 1 :]
-        sign = (-1) ** i * orient2d_rational(others[0], others[1], others[2])
-    return sign
+    smallest = min(points)
+    if sign != 0 or points.count(smallest) > 1:
+        return sign
+    i = points.index(smallest)  # see break_tie
+    others = points[:i] + points[i + 1 :]
+    return (-1) ** i * orient2d_rational(others[0], others[1], others[2])
 
 
 def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> Sign:

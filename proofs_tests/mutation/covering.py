@@ -36,7 +36,7 @@ class Covering:
         """Return the tests that run the mutated line, or if it runs on import, all that run a line of its folder."""
         lines = self.lines.get(mutant.file, {})
         contexts = set(lines.get(mutant.line, ()))
-        if "" in contexts:
+        if contexts == {""}:  # processes that tests start run lines in no context as well
             folder = Path(mutant.file).parent
             near = [there for file, there in self.lines.items() if Path(file).parent == folder]
             contexts = {context for there in near for line in there.values() for context in line}
