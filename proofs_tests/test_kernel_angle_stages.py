@@ -152,7 +152,7 @@ class TestStages:
 
     @pytest.mark.parametrize("grid", [0.0, 2.0, 3.0])
     def test_borders(self, grid: float, monkeypatch: pytest.MonkeyPatch) -> None:
-        least, most = 6.0, 14.0
+        least, most = 5.0, 14.0
         for constant, value in (("ORIENT2D_BOUND", 2.0**-4), ("DD_BOUND", 2.0**-4), ("SMALLEST_WEIGHT", least),
                                 ("LARGEST_WEIGHT", most)):  # fmt: skip
             monkeypatch.setattr(angle, constant, value)

@@ -82,18 +82,18 @@ class TestStages:
     @pytest.mark.parametrize("grid", [0.0, 2.0])
     def test_borders(self, name: str, grid: float, monkeypatch: pytest.MonkeyPatch) -> None:
         exact, code, above, n = MEASURES[name]
-        least, most = 8.0, 24.0
-        for constant, value in (("ORIENT2D_BOUND", 2.0**-4), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
+        least, most = 9.0, 19.0
+        for constant, value in (("ORIENT2D_BOUND", 2.0**-3), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
                                 ("LARGEST_WEIGHT", most)):  # fmt: skip
             monkeypatch.setattr(measure, constant, value)
-        k = make_context(np.ones(1))._replace(orient2d_bound=2.0**-3, grid_limit=grid)
+        k = make_context(np.ones(1))._replace(orient2d_bound=2.0**-4, grid_limit=grid)
         draw, met = random.Random(1), set()
         for _ in range(1000):
             bound, points = small(draw, n)
             value = exact(bound, *points)
             heavy, light = value.permanent >= least, value.permanent <= most
             sides = [abs(x.value) for q in points[1:] for x in difference(q, points[0])]
-            if heavy and value.exceeds(SHAPE_FACTOR * 2.0**-4):
+            if heavy and value.exceeds(SHAPE_FACTOR * 2.0**-3):
                 wanted = Stage.FILTER
             elif name == "area" and max(sides) <= grid:
                 wanted = Stage.GRID
@@ -104,7 +104,7 @@ class TestStages:
             assert code(k, bound, *flat(points)) == code_of(wanted, value.sign), (bound, points)
             k.counts[:] = 0
             assert above(k, bound, *flat(points)) == (value.sign > 0)
-            first = heavy and value.exceeds(SHAPE_FACTOR * 2.0**-3)
+            first = heavy and value.exceeds(SHAPE_FACTOR * 2.0**-4)
             assert k.counts.tolist() == [[int(i == (0 if first else wanted)) for i in range(5)], [0] * 5]
             met.add((wanted, value.sign))
         assert len(met) >= 7
