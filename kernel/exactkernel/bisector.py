@@ -197,7 +197,7 @@ def _nearest_coordinate(
         return a, False
     error = n_error * abs(d) + DD_BOUND * abs(p)
     x, tail, error = quotient_offset(a, p, p_tail, 1.125 * error, det, det_tail, det_error)
-    return x, error < math.inf and abs(x) >= _SMALLEST_PRODUCT and is_nearest_certain(x, tail, error)
+    return x, abs(x) >= _SMALLEST_PRODUCT and is_nearest_certain(x, tail, error)
 
 
 @jit

@@ -106,10 +106,10 @@ def _beyond(
 ) -> tuple[int, float]:  # fmt: skip
     """Return the exact sign of (coordinate of the circumcentre) - (middle + tail), and the difference, rounded.
 
-    The difference errs by at most 16u relative to itself. Uses 1000 doubles of scratch.
+    The difference errs by at most 16u relative to itself. Uses 820 doubles of scratch.
     """
     left, right, n, cross = scratch[0:64], scratch[64:128], scratch[128:256], scratch[256:272]
-    step, product, total, rest = scratch[272:276], scratch[276:404], scratch[404:788], scratch[788:]
+    step, product, total, rest = scratch[272:276], scratch[276:404], scratch[404:660], scratch[660:]
     ux, ux_tail = two_diff(bx, ax)
     uy, uy_tail = two_diff(by, ay)
     vx, vx_tail = two_diff(cx, ax)

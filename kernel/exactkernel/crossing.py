@@ -87,8 +87,6 @@ def _coordinate(
 @jit
 def is_nearest_certain(x: float, tail: float, error: float) -> bool:
     """Tell whether x is the double nearest to every number within the error of x + tail."""
-    if error == 0.0 and tail == 0.0:
-        return True
     margin = error + 4.0 * UNIT_ROUNDOFF * (abs(tail) + error)
     return bool(x + (tail + margin) == x and x + (tail - margin) == x)
 
