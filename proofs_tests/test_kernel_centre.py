@@ -85,7 +85,9 @@ class TestQuotient:
         assert abs(Fraction(4, 3) - Fraction(x) + Fraction(tail)) > Fraction(error)
 
 
-@pytest.mark.obligation("K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus")
+@pytest.mark.obligation(
+    "K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus"
+)
 class TestPairs:
     """The exact centre is within the errors; they are infinite outside of the window and where it is too flat."""
 
@@ -95,7 +97,9 @@ class TestPairs:
             for _ in range(80):
                 points = made(draw)
                 x, x_tail, x_error, y, y_tail, y_error = circumcentre_in_pairs(open_context(), *flat(points))
-                for value, tail, error, exact in zip((x, y), (x_tail, y_tail), (x_error, y_error), exact_centre(points), strict=True):
+                for value, tail, error, exact in zip(
+                    (x, y), (x_tail, y_tail), (x_error, y_error), exact_centre(points), strict=True
+                ):
                     assert abs(Fraction(value) + Fraction(tail) - exact) <= Fraction(error)
 
     @interpreted
@@ -156,7 +160,9 @@ class TestPairs:
         assert abs(Fraction(x) - exact_centre(points)[0]) > Fraction(error)
 
 
-@pytest.mark.obligation("K7", "a coordinate of a circumcentre is compared exactly with a sum of two doubles", method="property-based")
+@pytest.mark.obligation(
+    "K7", "a coordinate of a circumcentre is compared exactly with a sum of two doubles", method="property-based"
+)
 class TestBeyond:
     """The sign is exact, the difference errs by 16u at most, on both axes, for both orientations."""
 
@@ -192,7 +198,9 @@ class TestBeyond:
         assert abs(Fraction(found) - exact[1]) > 16 * U * abs(exact[1])
 
 
-@pytest.mark.obligation("K7", "a circumcentre that is called certain is the nearest double, ties to even", method="property-based")
+@pytest.mark.obligation(
+    "K7", "a circumcentre that is called certain is the nearest double, ties to even", method="property-based"
+)
 class TestNearest:
     """From any start near it, the nearest double is found; there is no negative zero; whole centres likewise."""
 
@@ -229,15 +237,15 @@ class TestNearest:
         assert not is_nearest(1.0 + 2.0**-52, tie)
 
 
-
-
 @interpreted
 @pytest.mark.obligation("K7", "what cannot be decided about a circumcentre is left open", method="named cases")
 class TestLeftOpen:
     """With answers of the expansions given: what is asked of them, and what is made of the answers."""
 
     @staticmethod
-    def decided(patch: pytest.MonkeyPatch, x: float, tail: float, *answers: tuple[int, float]) -> tuple[tuple[float, bool], list[tuple[float, float]]]:
+    def decided(
+        patch: pytest.MonkeyPatch, x: float, tail: float, *answers: tuple[int, float]
+    ) -> tuple[tuple[float, bool], list[tuple[float, float]]]:
         asked: list[tuple[float, float]] = []
 
         def scripted(axis: int, middle: float, rest: float, *_: object) -> tuple[int, float]:
@@ -322,13 +330,27 @@ class TestLeftOpen:
 
     def test_when_expansions_are_asked(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Only for coordinates that pairs leave open, or that are below the window; not after one that failed."""
-        values = ((1.0, 0.0), (1.0, 2.0**-53), (MIN, 0.0), (-MIN, 0.0), (math.nextafter(MIN, 0.0), 0.0), (1.0, math.inf))
+        values = (
+            (1.0, 0.0),
+            (1.0, 2.0**-53),
+            (MIN, 0.0),
+            (-MIN, 0.0),
+            (math.nextafter(MIN, 0.0), 0.0),
+            (1.0, math.inf),
+        )
         for (x, x_error), (y, y_error) in itertools.product(values, repeat=2):
             for answers in itertools.product((True, False), repeat=2):
                 pairs = (x, 0.0, x_error, y, 0.0, y_error)
                 asked: list[tuple[int, float]] = []
 
-                def decide(_: object, axis: int, value: float, *__: float, asked: list[tuple[int, float]] = asked, answers: tuple[bool, ...] = answers) -> tuple[float, bool]:
+                def decide(
+                    _: object,
+                    axis: int,
+                    value: float,
+                    *__: float,
+                    asked: list[tuple[int, float]] = asked,
+                    answers: tuple[bool, ...] = answers,
+                ) -> tuple[float, bool]:
                     asked.append((axis, value))
                     return 7.0 + axis, answers[axis]
 

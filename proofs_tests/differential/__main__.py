@@ -5,13 +5,12 @@ from collections import Counter
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
-
 from proofs_tests.differential.families import FAMILIES
 from proofs_tests.differential.reducing import code_of
 from proofs_tests.differential.running import Disagreement, Portion, portions, smallest
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
 
 _EVERY = 300.0  # seconds, where there is no terminal to draw a bar on
 

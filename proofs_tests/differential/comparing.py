@@ -4,6 +4,10 @@ from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
+from proofs_tests.differential import judging, triangulating
+from proofs_tests.differential.families import Given
+from proofs_tests.differential.table import Table, sign
+from proofs_tests.differential.triangulating import Triangle
 
 from exactkernel import incircle_batch, orient2d_batch
 from exactkernel.types import FloatArray
@@ -12,10 +16,6 @@ from exactmesh.errors import CollinearPointsError, CrossingError, PSLGError, Too
 from exactmesh.strategies import Corrupted, PlainMesh
 from exactmesh.triangulation import Triangulation
 from exactmesh.verify import Property, Verdict
-from proofs_tests.differential import judging, triangulating
-from proofs_tests.differential.families import Given
-from proofs_tests.differential.table import Table, sign
-from proofs_tests.differential.triangulating import Triangle
 
 __all__ = ["disagreements"]
 

@@ -7,11 +7,11 @@ from typing import TypeAlias
 
 from hypothesis.errors import HypothesisDeprecationWarning, UnsatisfiedAssumption
 from hypothesis.strategies import SearchStrategy
+from proofs_tests.differential.drawing import Drawer
 
 from exactkernel.types import FloatArray
 from exactmesh import PSLG, Carve, strategies
 from exactmesh.strategies import Corrupted, PlainMesh
-from proofs_tests.differential.drawing import Drawer
 
 __all__ = ["FAMILIES", "Given", "drawn", "named"]
 

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from itertools import combinations
 from math import isfinite
 
-from exactmesh.verify import Property
 from proofs_tests.differential.table import Table
 from proofs_tests.differential.triangulating import counterclockwise
+
+from exactmesh.verify import Property
 
 __all__ = ["PREREQUISITES", "Judge", "answers"]
 
@@ -31,7 +32,7 @@ def answers(
     """Return whether each property holds that can be told; on bad numbers and indices nothing else rests."""
     told = {
         Property.FINITE: all(isfinite(x) and isfinite(y) for x, y in points),
-        Property.INDICES: all(len(set(t)) == 3 and 0 <= min(t) and max(t) < len(points) for t in triangles),
+        Property.INDICES: all(len(set(t)) == 3 and min(t) >= 0 and max(t) < len(points) for t in triangles),
     }
     if not all(told.values()):
         return told

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
+from proofs_tests.differential.families import Given
 
 from exactmesh import PSLG
 from exactmesh.errors import ExactMeshError
 from exactmesh.strategies import Corrupted, PlainMesh
-from proofs_tests.differential.families import Given
 
 __all__ = ["code_of", "reduced", "size_of"]
 

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from proofs_tests.fuzzing.campaign import Campaign, Outcome, require_atheris
+from proofs_tests.fuzzing.judging import Target
+from proofs_tests.fuzzing.targets import TARGETS, target_named
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from exactmesh.errors import ExactMeshError
-from proofs_tests.fuzzing.campaign import Campaign, Outcome, require_atheris
-from proofs_tests.fuzzing.judging import Target
-from proofs_tests.fuzzing.targets import TARGETS, target_named
 
 
 def shown(outcomes: list[Outcome]) -> Table:

@@ -6,12 +6,12 @@ import zipfile
 from collections.abc import Sequence
 
 import numpy as np
-
-from exactmesh.errors import FileFormatError
-from exactmesh.io import Mesh, read, write
 from proofs_tests.fuzzing.judging import Target
 from proofs_tests.fuzzing.places import clean, names_its_file
 from proofs_tests.fuzzing.sameness import require_same_meshes
+
+from exactmesh.errors import FileFormatError
+from exactmesh.io import Mesh, read, write
 
 __all__ = ["TARGETS"]
 

@@ -15,9 +15,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from exactmesh.errors import ExactMeshError
 from proofs_tests.fuzzing.findings import known, written
 from proofs_tests.fuzzing.judging import Breach, Target
+
+from exactmesh.errors import ExactMeshError
 
 __all__ = ["AtherisUnavailableError", "Campaign", "Outcome", "require_atheris"]
 

@@ -1,14 +1,15 @@
 """Files of other packages' formats, through meshio: cut off, spoilt, or sound."""
 
-import io
 import contextlib
+import io
 from collections.abc import Sequence
+
+from proofs_tests.fuzzing.judging import Target, require
+from proofs_tests.fuzzing.places import clean
 
 from exactmesh.adapters import given_mesh
 from exactmesh.errors import FileFormatError
 from exactmesh.verify import verify
-from proofs_tests.fuzzing.judging import Target, require
-from proofs_tests.fuzzing.places import clean
 
 __all__ = ["SUFFIXES", "TARGETS"]
 

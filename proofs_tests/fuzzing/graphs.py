@@ -1,12 +1,12 @@
 """``PSLG`` and rings: what they let pass can be triangulated and refined, and the verifier agrees."""
 
 import numpy as np
-
-from exactmesh import PSLG, constrained_delaunay, refine, verify
-from exactmesh.errors import ExactMeshError, PSLGError
 from proofs_tests.fuzzing.cursor import Cursor, number_bytes, table_bytes
 from proofs_tests.fuzzing.judging import Target, require
 from proofs_tests.fuzzing.sameness import same
+
+from exactmesh import PSLG, constrained_delaunay, refine, verify
+from exactmesh.errors import ExactMeshError, PSLGError
 
 __all__ = ["TARGETS"]
 

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
+from proofs_tests.fuzzing.cursor import Cursor, table_bytes
+from proofs_tests.fuzzing.judging import Target, require
 
 from exactmesh.adapters import given_mesh
 from exactmesh.errors import ExactMeshError
@@ -13,8 +15,6 @@ from exactmesh.io import Mesh
 from exactmesh.triangle import Switch, parse, triangulate
 from exactmesh.triangle.dictionary import KEYS
 from exactmesh.verify import Property, check_certificate, verify
-from proofs_tests.fuzzing.cursor import Cursor, table_bytes
-from proofs_tests.fuzzing.judging import Target, require
 
 __all__ = ["TARGETS"]
 

@@ -28,7 +28,7 @@ def minimised(data: bytes, is_bad: Callable[[bytes], bool], tries: int = 1500) -
                 data = shorter
             else:
                 at += size
-        if size == 1 and len(data) == before or left[0] < 0:
+        if (size == 1 and len(data) == before) or left[0] < 0:
             break
         size = max(size // 2, 1)
     for at in range(len(data)):

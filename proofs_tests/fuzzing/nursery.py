@@ -17,7 +17,6 @@ WATCHED = ("exactmesh", "exactkernel", "meshio", "proofs_tests.fuzzing")
 def fuzz(name: str, folder: Path, arguments: list[str]) -> NoReturn:
     """Fuzz one target until libFuzzer has enough of it; each new breach of the law is minimised and written."""
     import atheris  # type: ignore[import-not-found, unused-ignore]  # an extra that few have
-
     from proofs_tests.fuzzing.findings import known, written
     from proofs_tests.fuzzing.judging import judged
     from proofs_tests.fuzzing.minimising import minimised

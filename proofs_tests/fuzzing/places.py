@@ -5,8 +5,9 @@ import os
 import tempfile
 from pathlib import Path
 
-from exactmesh.errors import FileFormatError, PSLGError
 from proofs_tests.fuzzing.judging import require
+
+from exactmesh.errors import FileFormatError, PSLGError
 
 __all__ = ["STEM", "clean", "names_its_file"]
 

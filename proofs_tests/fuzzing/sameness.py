@@ -3,9 +3,9 @@
 from dataclasses import fields
 
 import numpy as np
+from proofs_tests.fuzzing.judging import require
 
 from exactmesh.io import Mesh
-from proofs_tests.fuzzing.judging import require
 
 __all__ = ["require_same_dictionaries", "require_same_meshes", "same"]
 

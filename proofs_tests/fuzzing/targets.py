@@ -1,8 +1,9 @@
 """All targets, by name."""
 
-from exactmesh.errors import ExactMeshError
 from proofs_tests.fuzzing import archives, foreign, graphs, meshes, texts, triangle_files
 from proofs_tests.fuzzing.judging import Target
+
+from exactmesh.errors import ExactMeshError
 
 __all__ = ["TARGETS", "UnknownTargetError", "target_named"]
 

@@ -5,6 +5,10 @@ import os
 from collections.abc import Sequence
 
 import numpy as np
+from proofs_tests.fuzzing.cursor import Cursor
+from proofs_tests.fuzzing.judging import Target, require
+from proofs_tests.fuzzing.places import clean, names_its_file
+from proofs_tests.fuzzing.sameness import same
 
 from exactmesh import PSLG
 from exactmesh.conformance.inputs import given_input
@@ -13,10 +17,6 @@ from exactmesh.errors import ExactMeshError, FileFormatError, GeometryError, PSL
 from exactmesh.io import read_pslg
 from exactmesh.triangle import Switch, parse
 from exactmesh.verify import check_certificate, read_certificate, verify
-from proofs_tests.fuzzing.cursor import Cursor
-from proofs_tests.fuzzing.judging import Target, require
-from proofs_tests.fuzzing.places import clean, names_its_file
-from proofs_tests.fuzzing.sameness import same
 
 __all__ = ["TARGETS"]
 
@@ -122,7 +122,7 @@ def _literal(data: bytes) -> None:
         there = os.path.exists(text)
     except ValueError:
         there = False
-    if there or text.startswith("corpus:") and len(text) > 20:
+    if there or (text.startswith("corpus:") and len(text) > 20):
         return
     for task in Task:
         try:

@@ -4,14 +4,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from proofs_tests.fuzzing.judging import Target, require
+from proofs_tests.fuzzing.places import STEM, clean, names_its_file
+from proofs_tests.fuzzing.sameness import require_same_dictionaries, require_same_meshes, same
 
 from exactmesh import PSLG, constrained_delaunay
 from exactmesh.errors import ExactMeshError, FileFormatError, PSLGError
 from exactmesh.io import Mesh, read, read_areas, read_pslg, write, write_areas, write_pslg, write_voronoi
 from exactmesh.triangle import TriangleDict, load, loads
-from proofs_tests.fuzzing.judging import Target, require
-from proofs_tests.fuzzing.places import STEM, clean, names_its_file
-from proofs_tests.fuzzing.sameness import require_same_dictionaries, require_same_meshes, same
 
 __all__ = ["TARGETS"]
 
