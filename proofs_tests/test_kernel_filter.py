@@ -155,8 +155,8 @@ def within(x: Any, bound: Any) -> Any:
 
 @pytest.mark.obligation("K1", "the rules of the calculus are theorems about rounding to nearest", method="symbolic")
 class TestRules:
-    """For all reals with |exact - computed| <= e P: the rules for sums, products and decisions. Of rounding they use that
-    |fl(x) - x| <= u |fl(x)| and <= u |x|, and that fl is monotone (so |fl(a b)| <= fl(P Q)); and nothing else."""
+    """For all reals with |exact - computed| <= e P: the rules for sums, products, decisions. Of rounding they use that
+    |fl(x) - x| <= u |fl(x)| and <= u |x|, that fl is monotone (so |fl(a b)| <= fl(P Q)), nothing else."""
 
     def test_sum(self) -> None:
         a, exact_a, pa, b, exact_b, pb, x, p, e, u = z3.Reals("a A pa b B pb x p e u")
