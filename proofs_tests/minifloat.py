@@ -94,7 +94,7 @@ def _rounded_float(x: float, precision: int, quantum: float) -> float:
     return rounded
 
 
-def _kept_integer(x: float, precision: int, quantum: float) -> float:  # noqa: ARG001  # called as _rounded_float is
+def _kept_integer(x: float, precision: int, quantum: float) -> float:  # called as _rounded_float is
     return x
 
 
@@ -105,8 +105,8 @@ def _is_float_type(numba_type: object) -> bool:
 @overload(_rounded)
 def _rounded_overload(
     x: float,
-    precision: int,  # noqa: ARG001  # numba's rule: all arguments by their names
-    quantum: float,  # noqa: ARG001
+    precision: int,  # numba's rule: all arguments by their names
+    quantum: float,
 ) -> Callable[[float, int, float], float]:
     return _rounded_float if _is_float_type(x) else _kept_integer
 

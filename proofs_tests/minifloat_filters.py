@@ -100,7 +100,7 @@ def _nearer(decide: Arithmetic) -> Arithmetic:
     scratch, counts, mailbox = k.scratch, k.counts, k.mailbox
 
     @numba.njit
-    def call(bound: float, c: Floats, i: int, j: int) -> int:  # noqa: ARG001  # the bound is a constant of the source
+    def call(bound: float, c: Floats, i: int, j: int) -> int:  # the bound is a constant of the source
         context = Context(1.0, 1.0, 0.0, scratch, counts, mailbox)
         sign: int = decide(context, c[0, i], c[0, j], c[1, i], c[1, j], c[2, i], c[2, j])
         return sign
@@ -113,7 +113,7 @@ def _along(decide: Arithmetic) -> Arithmetic:
     scratch, counts, mailbox = k.scratch, k.counts, k.mailbox
 
     @numba.njit
-    def call(bound: float, c: Floats, i: int, j: int) -> int:  # noqa: ARG001
+    def call(bound: float, c: Floats, i: int, j: int) -> int:
         context = Context(1.0, 1.0, 0.0, scratch, counts, mailbox)
         sign: int = decide(
             context, c[1, i], c[1, j], c[0, i], c[0, j], c[3, i], c[3, j], c[2, i], c[2, j]

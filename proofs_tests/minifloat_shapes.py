@@ -53,7 +53,7 @@ def _angles(decide: Arithmetic, u: float) -> Arithmetic:
     scratch, counts, mailbox = k.scratch, k.counts, k.mailbox
 
     @numba.njit
-    def run(bound: float, x: Floats, sines: Floats, cosines: Floats) -> Tally:  # noqa: ARG001  # in the source
+    def run(bound: float, x: Floats, sines: Floats, cosines: Floats) -> Tally:  # in the source
         tried = certified = lies = 0
         context = Context(1.0, 1.0, 0.0, scratch, counts, mailbox)
         for sine in sines:
@@ -73,7 +73,7 @@ def _angles(decide: Arithmetic, u: float) -> Arithmetic:
     return run
 
 
-def _areas(decide: Arithmetic, u: float) -> Arithmetic:  # noqa: ARG001  # as _angles
+def _areas(decide: Arithmetic, u: float) -> Arithmetic:  # as _angles
     @numba.njit
     def run(bound: float, x: Floats, limits: Floats, _: Floats) -> Tally:
         tried = certified = lies = 0
@@ -90,7 +90,7 @@ def _areas(decide: Arithmetic, u: float) -> Arithmetic:  # noqa: ARG001  # as _a
     return run
 
 
-def _lengths(decide: Arithmetic, u: float) -> Arithmetic:  # noqa: ARG001
+def _lengths(decide: Arithmetic, u: float) -> Arithmetic:
     @numba.njit
     def run(bound: float, x: Floats, limits: Floats, _: Floats) -> Tally:
         tried = certified = lies = 0

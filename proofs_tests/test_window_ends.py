@@ -161,10 +161,10 @@ ADAPTIVE: dict[str, tuple[Callable[..., int], int, float, float]] = {
 EXACT = {**ORACLES, "orient2d": kernel_oracle.orient2d, "incircle": kernel_oracle.incircle}
 
 
-@pytest.mark.obligation("K6", "in a loop: exact at both ends of the window without rationals", method="enumeration")
+@pytest.mark.obligation("K6", "in a loop: exact at both ends of the window without rationals", method="named cases")
 class TestLoops:
-    """All tuples of few multiples of the smallest unit, and of the largest coordinates, are decided exactly in doubles
-    and expansions; one step outside the context closes the window."""
+    """Tuples of few multiples of the smallest unit, and of the largest coordinates, 150 each, are decided exactly in
+    doubles and expansions; one step outside the context closes the window."""
 
     @staticmethod
     def tuples(n: int, unit: float, largest: float) -> list[tuple[Point, ...]]:
