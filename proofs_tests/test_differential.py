@@ -84,7 +84,7 @@ def first_found(most: int = 1200) -> int:
 
 
 @pytest.mark.obligation(
-    "D1", "predicates, triangulations, carving and verdicts equal brute force on small inputs of every family",
+    "J2", "predicates, triangulations, carving and verdicts equal brute force on small inputs of every family",
     method="differential",
 )  # fmt: skip
 class TestSample:

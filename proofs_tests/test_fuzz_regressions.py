@@ -16,7 +16,7 @@ from exactmesh.errors import FileFormatError, GeometryError
 from exactmesh.io import read
 
 
-@pytest.mark.obligation("F2", "what fuzzing found stays fixed", method="named cases")
+@pytest.mark.obligation("P5", "what fuzzing found is refused, at once and by a typed error", method="named cases")
 class TestFound:
     """Inputs that once broke the law: each is refused by a typed error that says why, at once."""
 
