@@ -84,7 +84,7 @@ def first_found(most: int = 1200) -> int:
 
 
 @pytest.mark.obligation(
-    "D1", "predicates, triangulations, carving and verdicts equal brute force on small inputs of every family",
+    "J2", "predicates, triangulations, carving and verdicts equal brute force on small inputs of every family",
     method="differential",
 )  # fmt: skip
 class TestSample:
@@ -112,7 +112,7 @@ class TestSample:
 
 
 class TestBruteForce:
-    """Brute force itself: its signs and triangles are those of the definitions, in fractions, by other tests' oracles."""
+    """Brute force itself: its signs and triangles are those of the definitions in fractions, by other oracles."""
 
     @pytest.mark.parametrize("family", [family for family in FAMILIES if family.endswith("_points")])
     def test_points(self, family: str) -> None:
@@ -175,7 +175,7 @@ class TestCommand:
 
     def test_control_a_disagreement_is_reduced(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """A fault in brute force: no triangles at all. What is left of the smallest input is one triangle."""
-        monkeypatch.setattr(triangulating, "delaunay", lambda table: set())
+        monkeypatch.setattr(triangulating, "delaunay", lambda _: set())
         portion = compared(0, range(4))
         assert portion.disagreements
         one, given = smallest(portion.disagreements)

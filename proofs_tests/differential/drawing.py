@@ -26,7 +26,7 @@ class Drawer:
     def __init__(self, seed: int) -> None:
         self.chance = random.Random(seed)
 
-    def __call__(self, strategy: SearchStrategy[T], label: object = None) -> T:
+    def __call__(self, strategy: SearchStrategy[T]) -> T:
         inner: Any = strategy  # what hypothesis calls its own is not typed
         while type(inner).__name__ == "LazyStrategy":
             inner = inner.wrapped_strategy
@@ -47,9 +47,9 @@ def _bytes(draw: Drawer, it: Any) -> bytes:
 _WAYS: dict[str, Callable[[Drawer, Any], object]] = {
     "IntegersStrategy": _integer,
     "BytesStrategy": _bytes,
-    "BooleansStrategy": lambda draw, it: draw.chance.random() < 0.5,
+    "BooleansStrategy": lambda draw, _: draw.chance.random() < 0.5,
     "SampledFromStrategy": lambda draw, it: draw.chance.choice(it.elements),
-    "JustStrategy": lambda draw, it: it.elements[0],
+    "JustStrategy": lambda _, it: it.elements[0],
     "MappedStrategy": lambda draw, it: it.pack(draw(it.mapped_strategy)),
     "OneOfStrategy": lambda draw, it: draw(draw.chance.choice(it.original_strategies)),
     "CompositeStrategy": lambda draw, it: it.definition(draw, *it.args, **it.kwargs),

@@ -24,8 +24,8 @@ and for public functions that take objects of others, and the target that reache
 ``verify``                                              ``verify``
 ======================================================= ========================================================
 
-Not targets: ``conformance.channel`` and ``conformance.child`` unpickle what their own process wrote, and what the caller
-pickled; ``verify.schema`` reads a file of the package; HDF5 and netCDF are read by C libraries that meshio calls.
+Not targets: ``conformance.channel`` and ``conformance.child`` unpickle what their own process wrote, and what the
+caller pickled; ``verify.schema`` reads a file of the package; C libraries that meshio calls read HDF5 and netCDF.
 ``.v.node`` and ``.v.edge`` are written and never read, but as a ``.node`` and an ``.edge`` file, whose targets get
 them among their seeds.
 """

@@ -89,7 +89,7 @@ class Cursor:
         if kind == 8 and depth < _DEEPEST:
             return {self.text(4): self.thing(depth + 1) for _ in range(self.count(3))}
         if kind == 9:
-            return np.ma.masked_array(self.numbers(2, 2), mask=[[self.byte() & 1, 0], [0, 0]])
+            return np.ma.masked_array(self.numbers(2, 2), mask=[[self.byte() % 2 == 1, False], [False, False]])
         if kind == 10:
             return object()
         with np.errstate(all="ignore"):

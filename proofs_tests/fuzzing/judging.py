@@ -13,14 +13,14 @@ from types import FrameType
 from exactmesh.errors import ExactMeshError
 from exactmesh.triangle import TriangleWarning
 
-__all__ = ["SECONDS", "Breach", "Broken", "Target", "judged", "limited", "require"]
+__all__ = ["SECONDS", "Breach", "WrongResultError", "Target", "judged", "limited", "require"]
 
 SECONDS = 10.0  # of one input, of the processor's time
 _ROOM = 2 << 30  # bytes that one input may ask for
 _OURS = ("/exactmesh/", "/exactkernel/", "/fuzzing/")
 
 
-class Broken(Exception):
+class WrongResultError(Exception):
     """A result that is wrong: a round trip that changes something, a mesh that its verifier refuses."""
 
 
@@ -29,9 +29,9 @@ class Hang(BaseException):
 
 
 def require(condition: object, complaint: str) -> None:
-    """Raise :class:`Broken` unless the condition holds."""
+    """Raise :class:`WrongResultError` unless the condition holds."""
     if not condition:
-        raise Broken(complaint)
+        raise WrongResultError(complaint)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Target:
 
     Attributes:
         name: what it is asked for by.
-        run: reads the bytes; raises ExactMeshError for bad ones, Broken where the law is.
+        run: reads the bytes; raises ExactMeshError for bad ones, WrongResultError where the law is.
         seeds: makes small valid inputs.
         words: what the syntax is made of.
     """
@@ -80,13 +80,13 @@ def judged(target: Target, data: bytes) -> Breach | None:
             warnings.simplefilter("ignore", TriangleWarning)
             target.run(data)
     except ExactMeshError as error:
-        return None if str(error).strip() else Breach.of(Broken(f"{type(error).__name__} without a word"))
+        return None if str(error).strip() else Breach.of(WrongResultError(f"{type(error).__name__} without a word"))
     except (Exception, SystemExit, Hang) as error:
         return Breach.of(error)
     return None
 
 
-def _too_long(signum: int, frame: FrameType | None) -> None:
+def _too_long(_: int, __: FrameType | None) -> None:
     raise Hang(f"more than {SECONDS:g} s")
 
 

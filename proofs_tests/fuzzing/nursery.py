@@ -1,4 +1,4 @@
-"""Where targets run under libFuzzer, which ends the process that it runs in: each in a fork of one that has imported all.
+"""Where targets run under libFuzzer, which ends its process: each in a fork of one that has imported everything.
 
 ``python -m proofs_tests.fuzzing.nursery`` reads lines of JSON: a target, the folder of findings, a file for what is
 said, arguments of libFuzzer; and prints a line when the fork has ended. The command starts it.
