@@ -214,9 +214,11 @@ class TestDoubleDoubleBorder:
             ]:
                 tails = [0.0] * 4
                 tails[i] = s * size
-                pairs = [x for tail in tails for x in (1.0, tail)]
                 answer = s if i < 2 else -s
-                assert products_difference(*pairs, scratch) == int(stage) * 4 + answer + 1
+                assert (
+                    products_difference(1.0, tails[0], 1.0, tails[1], 1.0, tails[2], 1.0, tails[3], scratch)
+                    == int(stage) * 4 + answer + 1
+                )
 
     @pytest.mark.parametrize("s", [1.0, -1.0])
     @pytest.mark.parametrize("axis", [0, 1])
