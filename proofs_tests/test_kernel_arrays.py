@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -45,7 +46,7 @@ class TestIntegerArrays:
             if kept.all():
                 assert exact_doubles(array).tolist() == array.tolist()
             else:
-                message, indices = raised(ek.CoordinateError, lambda array=array: exact_doubles(array, "p"))
+                message, indices = raised(ek.CoordinateError, partial(exact_doubles, array, "p"))
                 assert message.startswith(f"p[2]: [2, {value}] would be rounded")
                 assert indices == (2,)
 
@@ -73,10 +74,11 @@ class TestIntegerArrays:
 
     @pytest.mark.parametrize("value", [2**53 - 1, 2**53, 2**53 + 2, 2**60, 0, 1])
     def test_integers_that_are_doubles(self, value: int) -> None:
-        for v in (value, -value, Fraction(value), np.float32(2.0**53)):
+        numbers: list[int | Fraction] = [value, -value, Fraction(value)]
+        for v in numbers:
             assert doubles_of((v, 0.25)) == [float(v), 0.25]
-        for v in (2**53 + 1, -(2**53) - 1, Fraction(1, 3)):
-            assert doubles_of((v, 0.25)) is None
+        for other in (2**53 + 1, -(2**53) - 1, Fraction(1, 3)):
+            assert doubles_of((other, 0.25)) is None
 
 
 @pytest.mark.obligation(
@@ -121,7 +123,7 @@ class TestRefusals:
         rows = [[-(2**31), 2**31 - 1, 0]]
         assert vertex_indices(rows).tolist() == rows
         for value in (-(2**31) - 1, 2**31):
-            assert raised(ek.ShapeError, lambda value=value: vertex_indices([[0, 1, value]]))[1] == (0,)
+            assert raised(ek.ShapeError, partial(vertex_indices, [[0, 1, value]]))[1] == (0,)
 
     def test_shapes(self) -> None:
         assert raised(ek.ShapeError, lambda: exact_doubles([[1, 2, 3]], "p"))[0] == (
@@ -131,9 +133,9 @@ class TestRefusals:
             "p has shape (1, 3); expected (n, 2)"
         )
         for bad in (np.zeros((2, 1)), np.zeros(2), np.zeros((2, 2, 2)), np.zeros((0, 3)), np.zeros((1, 0))):
-            raised(ek.ShapeError, lambda bad=bad: exact_doubles(bad))
+            raised(ek.ShapeError, partial(exact_doubles, bad))
         for bad in (np.zeros((3, 2), int), np.zeros(3, int), np.zeros((3, 3, 3), int), np.zeros((0, 3, 3), int)):
-            raised(ek.ShapeError, lambda bad=bad: vertex_indices(bad))
+            raised(ek.ShapeError, partial(vertex_indices, bad))
         for ragged in (lambda: exact_doubles([[1, 2], [3]], "p"), lambda: vertex_indices([[1, 2, 3], [3]], "p")):
             assert re.match(r"p is not an array of shape \([nm], [23]\): ", raised(ek.ShapeError, ragged)[0])
 
@@ -173,7 +175,7 @@ class TestChunks:
         points = np.random.default_rng(3).integers(-3, 4, (n, 11, 2)).astype(float)
         expected = [exact(*row) for row in np.swapaxes(points, 0, 1).tolist()]
         assert set(expected) == {-1, 0, 1}
-        monkeypatch.setattr(batch.np, "empty", lambda shape, dtype: np.full(shape, 9, dtype))  # nothing by chance
+        monkeypatch.setattr(np, "empty", lambda shape, dtype: np.full(shape, 9, dtype))  # nothing by chance
         for chunk in (1, 3, 11, 12, 1 << 20):
             monkeypatch.setattr(batch, "_CHUNK", chunk)
             assert signs_of(*points).tolist() == expected

@@ -130,7 +130,7 @@ class TestCacheRules:
 
     def test_thirty_days(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         now, days = 2_000_000_000, 30 * 86400
-        monkeypatch.setattr(jit.time, "time", lambda: float(now))
+        monkeypatch.setattr(time, "time", lambda: float(now))
         ages = {"a": days + 1, "b": days, "c": days - 600, "d": 0}
         for name, age in ages.items():
             (tmp_path / (name * 16)).mkdir()
@@ -197,7 +197,7 @@ class TestSettings:
         before = jit._config.CACHE_DIR
         monkeypatch.setattr(jit, "COMPILED", compiled)
         monkeypatch.setattr(jit, "_CACHE", tmp_path)
-        monkeypatch.setattr(jit.numba, "njit", njit)
+        monkeypatch.setattr(numba, "njit", njit)
         assert decorator(_increment) is _increment
         settings = {"cache": True, "fastmath": False, "_nrt": False, "forceinline": is_inlined}
         assert asked == [settings | {"folder": str(tmp_path)}] * compiled

@@ -1,16 +1,21 @@
 """K7: the last stage: the predicates of rational points, and how compiled code asks for them."""
 
+import inspect
 import threading
+import types
 from collections.abc import Callable
 from fractions import Fraction
 from itertools import combinations_with_replacement, permutations, product
+from pathlib import Path
 
+import llvmlite.binding
+import numba
 import numpy as np
 import pytest
 from gmpy2 import mpq
 from proofs_tests import kernel_oracle as oracle
 
-from exactkernel import rational
+from exactkernel import jit, rational
 from exactkernel.rational import (
     diametral_from_doubles,
     diametral_rational,
@@ -52,7 +57,7 @@ class TestRational:
 
     def test_sizes(self) -> None:
         wild = [Fraction(10) ** 40, Fraction(1, 10**40), Fraction(-3), Fraction(0), Fraction(7, 3)]
-        points = list(product(wild, repeat=2))
+        points = [(x, y) for x in wild for y in wild]
         for i in range(0, 25 * 25, 7):
             there = (points[i % 25], points[i // 25], points[(i * i + 3) % 25], points[(5 * i + 1) % 25])
             assert orient2d_rational(*rational_points(there)[:3]) == oracle.orient2d(*there[:3])
@@ -160,6 +165,23 @@ class TestQuestions:
         assert mailbox.tolist() == [7, 5 * 4 + 1, 9]
         assert given == [coordinates]
         assert rational._pending == []
+
+    @pytest.mark.parametrize(("name", "ask", "arity"), QUESTIONS)
+    def test_signatures(self, name: str, ask: Callable[..., int], arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Machine code passes an address, a number and an attempt, and all the doubles of the question, by a symbol of
+        that question alone."""
+        symbols: list[str] = []
+        monkeypatch.setattr(llvmlite.binding, "add_symbol", lambda symbol, _: symbols.append(symbol))
+        monkeypatch.setattr(jit, "COMPILED", True)
+        module = types.ModuleType("exactkernel.rational_compiled")
+        path = str(rational.__file__)
+        exec(compile(Path(path).read_text(encoding="utf-8"), path, "exec"), vars(module))
+        external = vars(module)[name]
+        assert external.sig.args == (numba.types.int64,) * 3 + (numba.types.float64,) * arity
+        assert external.sig.return_type == numba.types.void
+        assert len(inspect.signature(source(ask)).parameters) == arity + 1
+        assert external.symbol in symbols
+        assert len(set(symbols)) == 4
 
     @pytest.mark.parametrize("error", [RecursionError, MemoryError, KeyboardInterrupt, ValueError])
     @pytest.mark.parametrize("attempt", [0, 1, 2])

@@ -127,6 +127,18 @@ class TestGridAlone:
         assert not k.counts[:, [ek.Stage.FILTER, ek.Stage.RATIONAL]].any()
         record_property("cases", cases)
 
+    @pytest.mark.parametrize(
+        ("adaptive", "n", "row"), [(orient2d_adaptive, 3, 0), (diametral_adaptive, 3, 0), (incircle_adaptive, 4, 1)]
+    )
+    def test_limit(self, adaptive: Adaptive, n: int, row: int) -> None:
+        """Whichever difference is the largest: 4096 units are decided there, 4097 are not."""
+        for i, s, size in product(range(2 * n - 2), (1.0, -1.0), (4096.0, 4097.0)):
+            k = make_context(np.ones(1))._replace(orient2d_bound=1e300, incircle_bound=1e300)
+            values = [1.0] * (2 * n - 2) + [0.0, 0.0]
+            values[i] = s * size
+            adaptive(k, *values)
+            assert (k.counts[row, ek.Stage.GRID] == 1) == (size == 4096.0)
+
 
 WINDOWS = [
     (ek.orient2d_staged, 3, MIN_COORDINATE_DEGREE_2, MAX_COORDINATE_DEGREE_2),
@@ -214,9 +226,11 @@ class TestDoubleDoubleBorder:
             ]:
                 tails = [0.0] * 4
                 tails[i] = s * size
-                pairs = [x for tail in tails for x in (1.0, tail)]
                 answer = s if i < 2 else -s
-                assert products_difference(*pairs, scratch) == int(stage) * 4 + answer + 1
+                assert (
+                    products_difference(1.0, tails[0], 1.0, tails[1], 1.0, tails[2], 1.0, tails[3], scratch)
+                    == int(stage) * 4 + answer + 1
+                )
 
     @pytest.mark.parametrize("s", [1.0, -1.0])
     @pytest.mark.parametrize("axis", [0, 1])

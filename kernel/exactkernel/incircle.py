@@ -346,7 +346,8 @@ def _perturbed_rational(points: list[RationalPoint]) -> int:
         return sign
     i = points.index(smallest)  # see break_tie
     others = points[:i] + points[i + 1 :]
-    return (-1) ** i * orient2d_rational(others[0], others[1], others[2])
+    turn = orient2d_rational(others[0], others[1], others[2])
+    return -turn if i % 2 else turn
 
 
 def incircle_perturbed(a: PointLike, b: PointLike, c: PointLike, d: PointLike) -> Sign:
