@@ -4,6 +4,7 @@ import importlib
 import itertools
 import math
 import random
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -21,7 +22,6 @@ from exactkernel.angle import (
     beyond,
     corner_code,
     corner_double_double,
-    corner_expansion,
     edge_products,
     sign_of,
     some_corner,
@@ -32,6 +32,7 @@ from exactkernel.expansions import two_diff
 from exactkernel.types import Stage
 
 angle = importlib.import_module("exactkernel.angle")
+corner_expansion: Callable[..., int] = angle.corner_expansion
 Point = tuple[float, float]
 
 EXACT = (0.0, 45.0, 90.0, 135.0, 180.0)
@@ -97,7 +98,8 @@ class TestParts:
             assert dots == [dot.value for dot in wanted]
             assert largest == max(dot.permanent for dot in wanted)
             area = cross(difference(b, a), difference(c, b))
-            assert (twice, crosses) == (area.value, area.permanent)
+            assert twice == area.value
+            assert crosses == area.permanent
 
     def test_double_doubles(self) -> None:
         """The value errs by at most DD_BOUND times the permanent, and its rounding to one double."""
@@ -153,9 +155,9 @@ class TestStages:
     @pytest.mark.parametrize("grid", [0.0, 2.0, 3.0])
     def test_borders(self, grid: float, monkeypatch: pytest.MonkeyPatch) -> None:
         least, most = 5.0, 14.0
-        for constant, value in (("ORIENT2D_BOUND", 2.0**-4), ("DD_BOUND", 2.0**-4), ("SMALLEST_WEIGHT", least),
+        for constant, number_given in (("ORIENT2D_BOUND", 2.0**-4), ("DD_BOUND", 2.0**-4), ("SMALLEST_WEIGHT", least),
                                 ("LARGEST_WEIGHT", most)):  # fmt: skip
-            monkeypatch.setattr(angle, constant, value)
+            monkeypatch.setattr(angle, constant, number_given)
         k, draw, met = make_context(np.ones(1))._replace(grid_limit=grid), random.Random(1), set()
         for _ in range(900):
             points, bound = small(draw), angle_bound(draw.choice(EXACT))
@@ -198,7 +200,12 @@ class TestStages:
     def test_triangles_that_the_filter_leaves_are_handed_on(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """And nothing else is: seen by what some_corner is asked."""
         asked: list[int] = []
-        monkeypatch.setattr(angle, "some_corner", lambda k, bound, wanted, *_: bool(asked.append(wanted)))
+
+        def some_corner(_: object, __: object, wanted: int, *___: float) -> bool:
+            asked.append(wanted)
+            return False
+
+        monkeypatch.setattr(angle, "some_corner", some_corner)
         k = make_context(np.ones(1))._replace(orient2d_bound=2.0**-4)
         right = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
         for degrees in (45.0, 90.0):
@@ -258,13 +265,13 @@ class TestCorners:
     def answers(patch: pytest.MonkeyPatch, codes: tuple[int, ...], wanted: int) -> tuple[bool, list[int], list[str]]:
         asked: list[str] = []
 
-        def scripted(k: object, bound: object, *corners: str) -> int:
+        def scripted(_: object, __: object, *corners: str) -> int:
             asked.append("".join(corners))
             return codes[len(asked) - 1]
 
         patch.setattr(angle, "corner_code", scripted)
         k = make_context(np.ones(1))
-        found = some_corner(k, angle_bound(20.0), wanted, *"ABCDEF")  # type: ignore[arg-type]  # seen by no arithmetic
+        found = some_corner(k, angle_bound(20.0), wanted, *"ABCDEF")
         assert k.counts[1].sum() == 0
         return found, k.counts[0].tolist(), asked
 

@@ -111,7 +111,7 @@ class TestStages:
         for module in (bisector, orient2d):
             monkeypatch.setattr(module, "DD_BOUND", 2.0**-4)
         stages, k, draw, met = Stages(monkeypatch), make_context(np.ones(1)), random.Random(1), set()
-        for _ in range(1500):
+        for _ in range(500):
             points = small(draw, n)
             det = exact(*points)
             wanted = FILTER if det.exceeds(2.0**-2) else DOUBLE_DOUBLE if det.exceeds(2.0**-4) else EXPANSION
@@ -125,7 +125,7 @@ class TestStages:
         """With the published bounds: the sign is right, and decided no later than twice the bound of a stage asks."""
         exact, adaptive, _, bound = CASES[name]
         stages, k, draw, met = Stages(monkeypatch), make_context(np.ones(1)), random.Random(2), set()
-        for _ in range(600):
+        for _ in range(300):
             points = near_ties(name, draw)
             det = exact(*points)
             sign, stage = stages.decided(adaptive, k, points)

@@ -62,7 +62,11 @@ class TestAttempts:
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_never_answered(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
-        monkeypatch.setattr(bisector_rational, f"_ask_{name}", lambda _, number, attempt, *__: attempts.append(attempt))
+
+        def silent(_: int, __: int, attempt: int, *___: float) -> None:
+            attempts.append(attempt)
+
+        monkeypatch.setattr(bisector_rational, f"_ask_{name}", silent)
         with pytest.raises(RuntimeError, match="interrupted at every attempt"):
             getattr(bisector_rational, f"{name}_from_doubles")(mailbox, *[0.5] * arity)
         assert attempts == list(range(16))

@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -19,6 +20,7 @@ from exactkernel.context import SCRATCH_SIZE, Context, guarded_context, make_con
 
 U = Fraction(1, 2**53)
 MIN, MAX = MIN_COORDINATE_DEGREE_4, MAX_COORDINATE_DEGREE_4
+_beyond: Callable[..., tuple[int, float]] = centre._beyond
 Triangle = list[tuple[float, float]]
 
 
@@ -85,7 +87,9 @@ class TestQuotient:
         assert abs(Fraction(4, 3) - Fraction(x) + Fraction(tail)) > Fraction(error)
 
 
-@pytest.mark.obligation("K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus")
+@pytest.mark.obligation(
+    "K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus"
+)
 class TestPairs:
     """The exact centre is within the errors; they are infinite outside of the window and where it is too flat."""
 
@@ -95,7 +99,9 @@ class TestPairs:
             for _ in range(80):
                 points = made(draw)
                 x, x_tail, x_error, y, y_tail, y_error = circumcentre_in_pairs(open_context(), *flat(points))
-                for value, tail, error, exact in zip((x, y), (x_tail, y_tail), (x_error, y_error), exact_centre(points), strict=True):
+                for value, tail, error, exact in zip(
+                    (x, y), (x_tail, y_tail), (x_error, y_error), exact_centre(points), strict=True
+                ):
                     assert abs(Fraction(value) + Fraction(tail) - exact) <= Fraction(error)
 
     @interpreted
@@ -156,7 +162,9 @@ class TestPairs:
         assert abs(Fraction(x) - exact_centre(points)[0]) > Fraction(error)
 
 
-@pytest.mark.obligation("K7", "a coordinate of a circumcentre is compared exactly with a sum of two doubles", method="property-based")
+@pytest.mark.obligation(
+    "K7", "a coordinate of a circumcentre is compared exactly with a sum of two doubles", method="property-based"
+)
 class TestBeyond:
     """The sign is exact, the difference errs by 16u at most, on both axes, for both orientations."""
 
@@ -169,7 +177,7 @@ class TestBeyond:
                 middle = float(exact)
                 for tail in (0.0, float(exact - Fraction(middle)), -float(exact), 0.3):
                     scratch.fill(draw.choice((math.nan, 1e300)))
-                    side, found = centre._beyond(axis, middle, tail, *flat(turned), scratch)
+                    side, found = _beyond(axis, middle, tail, *flat(turned), scratch)
                     wanted = exact - Fraction(middle) - Fraction(tail)
                     assert side == (wanted > 0) - (wanted < 0)
                     assert abs(Fraction(found) - wanted) <= 16 * U * abs(wanted)
@@ -182,17 +190,19 @@ class TestBeyond:
         watched_expansions(monkeypatch, centre)
         scratch = Workspace.of(SCRATCH_SIZE)
         for axis in (0, 1):
-            assert centre._beyond(axis, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, scratch) == (0, 0.0)
+            assert _beyond(axis, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, scratch) == (0, 0.0)
 
     def test_control_the_other_axis_differs(self) -> None:
         points = generic(random.Random(4))
         exact = exact_centre(points)
-        _, found = centre._beyond(0, 0.0, 0.0, *flat(points), np.empty(SCRATCH_SIZE))
+        _, found = _beyond(0, 0.0, 0.0, *flat(points), np.empty(SCRATCH_SIZE))
         assert abs(Fraction(found) - exact[0]) <= 16 * U * abs(exact[0])
         assert abs(Fraction(found) - exact[1]) > 16 * U * abs(exact[1])
 
 
-@pytest.mark.obligation("K7", "a circumcentre that is called certain is the nearest double, ties to even", method="property-based")
+@pytest.mark.obligation(
+    "K7", "a circumcentre that is called certain is the nearest double, ties to even", method="property-based"
+)
 class TestNearest:
     """From any start near it, the nearest double is found; there is no negative zero; whole centres likewise."""
 
@@ -229,18 +239,18 @@ class TestNearest:
         assert not is_nearest(1.0 + 2.0**-52, tie)
 
 
-
-
 @interpreted
 @pytest.mark.obligation("K7", "what cannot be decided about a circumcentre is left open", method="named cases")
 class TestLeftOpen:
     """With answers of the expansions given: what is asked of them, and what is made of the answers."""
 
     @staticmethod
-    def decided(patch: pytest.MonkeyPatch, x: float, tail: float, *answers: tuple[int, float]) -> tuple[tuple[float, bool], list[tuple[float, float]]]:
+    def decided(
+        patch: pytest.MonkeyPatch, x: float, tail: float, *answers: tuple[int, float]
+    ) -> tuple[tuple[float, bool], list[tuple[float, float]]]:
         asked: list[tuple[float, float]] = []
 
-        def scripted(axis: int, middle: float, rest: float, *_: object) -> tuple[int, float]:
+        def scripted(_: int, middle: float, rest: float, *__: object) -> tuple[int, float]:
             asked.append((middle, rest))
             return answers[len(asked) - 1]
 
@@ -303,7 +313,12 @@ class TestLeftOpen:
     def test_errors_told(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """At least 16u of the difference and u of the sum, at most twice that."""
         told: list[float] = []
-        monkeypatch.setattr(centre, "is_nearest_certain", lambda x, tail, error: bool(told.append(error)) or True)
+
+        def recorded(_: float, __: float, error: float) -> bool:
+            told.append(error)
+            return True
+
+        monkeypatch.setattr(centre, "is_nearest_certain", recorded)
         for tail, found in ((0.0, 2.0**-60), (2.0**-53, 2.0**-90), (2.0**-60, -(2.0**-61)), (2.0**-60, -(2.0**-60))):
             self.decided(monkeypatch, 1.0, tail, (1, found))
             least = 16 * U * abs(Fraction(found)) + U * abs(Fraction(tail) + Fraction(found))
@@ -320,15 +335,36 @@ class TestLeftOpen:
                 first = max(first, steps * is_certain)
             assert 32 + 2 + 4 - 1 <= first <= 32 + 2 + 8 + 1
 
+    def test_the_interval_of_an_error_alone(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """An error 2u of itself below the middle of two doubles, on either side of 1: three candidates."""
+        monkeypatch.setattr(centre, "is_nearest_certain", lambda *_: False)
+        for steps, is_decided in ((2, False), (32, True)):
+            found = 2.0**-5 * (1 - steps * 2.0**-53)
+            assert self.decided(monkeypatch, 1.0, -found, (1, found), (0, 0.0))[0][1] is is_decided
+
     def test_when_expansions_are_asked(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Only for coordinates that pairs leave open, or that are below the window; not after one that failed."""
-        values = ((1.0, 0.0), (1.0, 2.0**-53), (MIN, 0.0), (-MIN, 0.0), (math.nextafter(MIN, 0.0), 0.0), (1.0, math.inf))
+        values = (
+            (1.0, 0.0),
+            (1.0, 2.0**-53),
+            (MIN, 0.0),
+            (-MIN, 0.0),
+            (math.nextafter(MIN, 0.0), 0.0),
+            (1.0, math.inf),
+        )
         for (x, x_error), (y, y_error) in itertools.product(values, repeat=2):
             for answers in itertools.product((True, False), repeat=2):
                 pairs = (x, 0.0, x_error, y, 0.0, y_error)
                 asked: list[tuple[int, float]] = []
 
-                def decide(_: object, axis: int, value: float, *__: float, asked: list[tuple[int, float]] = asked, answers: tuple[bool, ...] = answers) -> tuple[float, bool]:
+                def decide(
+                    _: object,
+                    axis: int,
+                    value: float,
+                    *__: float,
+                    asked: list[tuple[int, float]] = asked,
+                    answers: tuple[bool, ...] = answers,
+                ) -> tuple[float, bool]:
                     asked.append((axis, value))
                     return 7.0 + axis, answers[axis]
 

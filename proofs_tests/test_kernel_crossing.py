@@ -3,6 +3,7 @@
 import itertools
 import math
 import random
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -16,6 +17,7 @@ from exactkernel.constants import DD_BOUND, MAX_COORDINATE_DEGREE_4, MIN_COORDIN
 from exactkernel.context import SCRATCH_SIZE, Context, guarded_context, make_context
 from exactkernel.crossing import crossing_in_pairs, dd_cross, is_nearest_certain
 from exactkernel.expansions import determinant_2x2, two_diff
+from exactkernel.types import FloatArray
 
 U = Fraction(1, 2**53)
 MIN, MAX = MIN_COORDINATE_DEGREE_4, MAX_COORDINATE_DEGREE_4
@@ -28,6 +30,16 @@ def flat(points: Points) -> list[float]:
 
 def open_context() -> Context:
     return make_context(np.ones(1))
+
+
+def answering(answers: Sequence[bool], asked: list[float]) -> Callable[..., bool]:
+    """Give these answers in turn; the first argument of each question is written down."""
+
+    def answer(x: float, *_: object) -> bool:
+        asked.append(x)
+        return answers[len(asked) - 1]
+
+    return answer
 
 
 def exact_crossing(points: Points) -> tuple[Fraction, Fraction]:
@@ -57,7 +69,9 @@ def axes(draw: random.Random) -> Points:
     return draw.choice([points, points[2:] + points[:2]])
 
 
-@pytest.mark.obligation("K1", "the parts of a crossing: errors sound and tight, small products refused", method="calculus")
+@pytest.mark.obligation(
+    "K1", "the parts of a crossing: errors sound and tight, small products refused", method="calculus"
+)
 class TestParts:
     """Determinants and coordinates in pairs are within their errors, which the calculus does not undercut by much."""
 
@@ -77,10 +91,14 @@ class TestParts:
         """At all corners of the errors of numerator and denominator, which are known to 2^-10."""
         draw = random.Random(2)
         for relative, _ in itertools.product((0.0, 2.0**-100, 2.0**-40, 2.0**-10), range(50)):
-            a, u, num, det = (draw.uniform(1, 2) * 2.0 ** draw.randint(-20, 20) * draw.choice((-1, 1)) for _ in range(4))
+            a, u, num, det = (
+                draw.uniform(1, 2) * 2.0 ** draw.randint(-20, 20) * draw.choice((-1, 1)) for _ in range(4)
+            )
             u_tail, num_tail, det_tail = (x * draw.uniform(-1, 1) * 2.0**-54 for x in (u, num, det))
             num_error, det_error = abs(num) * relative, abs(det) * relative
-            x, tail, error = crossing._coordinate(a, u, u_tail, 9.0, 1.0, num, num_tail, num_error, det, det_tail, det_error)
+            x, tail, error = crossing._coordinate(
+                a, u, u_tail, 9.0, 1.0, num, num_tail, num_error, det, det_tail, det_error
+            )
             exact_u = Fraction(u) + Fraction(u_tail)
             for s, t in itertools.product((-1, 0, 1), repeat=2):
                 top = Fraction(num) + Fraction(num_tail) + s * Fraction(num_error)
@@ -103,7 +121,11 @@ class TestParts:
             for u, num in ((2.0**-500 * sign, 2.0**-400), (least, sign)):
                 x, _, error = crossing._coordinate(1.0, u, 0.0, 0.0, 1.0, num, 0.0, 0.0, 1.0, 0.0, 0.0)
                 assert (x, error < 1e-20) == (1.0, True)
-            assert crossing._coordinate(1.0, below * sign, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0) == (1.0, 0.0, math.inf)
+            assert crossing._coordinate(1.0, below * sign, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0) == (
+                1.0,
+                0.0,
+                math.inf,
+            )
 
     def test_zeros(self) -> None:
         """Where zero is within the error, it is taken; what is exact is within twice the error of it."""
@@ -118,7 +140,9 @@ class TestParts:
         assert abs(Fraction(high) + Fraction(low) - exact) <= Fraction(error) < abs(Fraction(high) - exact)
 
 
-@pytest.mark.obligation("ARR2", "a double is called nearest only if it is nearest to all that the error allows", method="named cases")
+@pytest.mark.obligation(
+    "ARR2", "a double is called nearest only if it is nearest to all that the error allows", method="named cases"
+)
 class TestNearestCertain:
     """Certain: nearest to both ends. Uncertain: an end is at the border, or nearer to it than the margin's 4u."""
 
@@ -129,7 +153,10 @@ class TestNearestCertain:
                 tail = x * 2.0**-53 * draw.choice((0.0, draw.uniform(-1, 1)))
                 error = abs(x) * 2.0**-53 * draw.choice((0.0, 1e-9, draw.random()))
                 ends = [Fraction(x) + Fraction(tail) + s * Fraction(error) for s in (-1, 1)]
-                wide = [e + s * (4 * U * (abs(Fraction(tail)) + Fraction(error)) * (1 + 4 * U)) for e, s in zip(ends, (-1, 1), strict=True)]
+                wide = [
+                    e + s * (4 * U * (abs(Fraction(tail)) + Fraction(error)) * (1 + 4 * U))
+                    for e, s in zip(ends, (-1, 1), strict=True)
+                ]
                 certain = is_nearest_certain(x, tail, error)
                 assert not certain or all(float(e) == x for e in ends)
                 assert certain or not all(float(e) == x for e in wide)
@@ -152,12 +179,14 @@ class TestNearestCertain:
         assert not is_nearest_certain(1.0, tail, 2.0**-54 * 2.0**-52)
 
 
-@pytest.mark.obligation("ARR2", "whether a double is the exact crossing is decided by expansions", method="property-based")
+@pytest.mark.obligation(
+    "ARR2", "whether a double is the exact crossing is decided by expansions", method="property-based"
+)
 class TestExact:
     """Of doubles near a crossing, exactly the one that is it is told to be."""
 
     @staticmethod
-    def is_exact(points: Points, axis: int, x: float, scratch: np.ndarray) -> bool:  # type: ignore[type-arg]  # or a Workspace
+    def is_exact(points: Points, axis: int, x: float, scratch: FloatArray) -> bool:
         a, b, c, d = points
         u, v, w = ([two_diff(p[i], q[i]) for i in range(2)] for p, q in ((b, a), (d, c), (c, a)))
         det, num, rest = scratch[0:16], scratch[16:32], scratch[32:]
@@ -179,9 +208,14 @@ class TestExact:
     def test_outside_of_the_window(self) -> None:
         """Expansions are not asked there, and could not answer."""
         scratch = np.zeros(SCRATCH_SIZE)
-        for x, inside in ((MIN, True), (math.nextafter(MIN, 0.0), False), (MAX, True), (math.nextafter(MAX, math.inf), False)):
+        for x, inside in (
+            (MIN, True),
+            (math.nextafter(MIN, 0.0), False),
+            (MAX, True),
+            (math.nextafter(MAX, math.inf), False),
+        ):
             points = [(x, 1.0), (x, -1.0), (0.0, 0.0), (1.0, 0.0)]
-            assert exact_crossing(points) == (x, 0)
+            assert exact_crossing(points) == (Fraction(x), Fraction(0))
             assert self.is_exact(points, 0, x, scratch) is inside
 
     @interpreted
@@ -198,7 +232,11 @@ class TestExact:
         assert not self.is_exact(points, 0, 1 / 3, np.zeros(SCRATCH_SIZE))
 
 
-@pytest.mark.obligation("ARR2", "a crossing in pairs is within its error, exact where it is a double, open where unknown", method="property-based")
+@pytest.mark.obligation(
+    "ARR2",
+    "a crossing in pairs is within its error, exact where it is a double, open where unknown",
+    method="property-based",
+)
 class TestPairs:
     """The exact crossing is within the errors, which are zero where it is a double that the window holds."""
 
@@ -245,11 +283,11 @@ class TestPairs:
         points = [(0.0, 0.25), (3.0, 0.5), (1.0, 1.0), (2.0, -1.0)]
         for certain in itertools.product((False, True), repeat=2):
             for exact in itertools.product((False, True), repeat=2):
-                answers, tried = iter(certain), []
-                monkeypatch.setattr(crossing, "is_nearest_certain", lambda *_, answers=answers: next(answers))
-                monkeypatch.setattr(crossing, "_is_exact", lambda x, a, *_, exact=exact, tried=tried: (tried.append(a), exact[len(tried) - 1])[1])
+                tried: list[float] = []
+                monkeypatch.setattr(crossing, "is_nearest_certain", answering(certain, []))
+                monkeypatch.setattr(crossing, "_is_exact", answering(exact, tried))
                 found = crossing_in_pairs(open_context(), *flat(points))
-                assert tried == ([] if all(certain) else [0.0, 0.25])
+                assert len(tried) == (0 if all(certain) else 2)
                 for (_, tail, error), told in zip((found[:3], found[3:]), exact, strict=True):
                     assert (error == 0.0) == (bool(tried) and told)
                     assert error > 0.0 or tail == 0.0

@@ -3,7 +3,7 @@
 import itertools
 import math
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def length(bound: float, a: Point, b: Point) -> Magnitude:
     return inner(u, u) - number(bound) * number(bound)
 
 
-MEASURES = {
+MEASURES: dict[str, tuple[Callable[..., Magnitude], Callable[..., int], Callable[..., bool], int]] = {
     "area": (area, area_code, area_above_adaptive, 3),
     "length": (length, length_code, length_above_adaptive, 2),
 }
@@ -83,9 +83,9 @@ class TestStages:
     def test_borders(self, name: str, grid: float, monkeypatch: pytest.MonkeyPatch) -> None:
         exact, code, above, n = MEASURES[name]
         least, most = 9.0, 19.0
-        for constant, value in (("ORIENT2D_BOUND", 2.0**-3), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
+        for constant, number_given in (("ORIENT2D_BOUND", 2.0**-3), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
                                 ("LARGEST_WEIGHT", most)):  # fmt: skip
-            monkeypatch.setattr(measure, constant, value)
+            monkeypatch.setattr(measure, constant, number_given)
         k = make_context(np.ones(1))._replace(orient2d_bound=2.0**-4, grid_limit=grid)
         draw, met = random.Random(1), set()
         for _ in range(1000):
