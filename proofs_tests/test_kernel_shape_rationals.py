@@ -1,12 +1,15 @@
 """K7: bounds on shapes for coordinates that are no doubles: ties and ends of ranges, exactly."""
 
 import itertools
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
 from proofs_tests import shape_oracle
+from proofs_tests.interpreted import calls_of, interpreted
 
 import exactkernel as ek
+from exactkernel import shape
 
 THIRD = Fraction(1, 3)
 CORNERS = [(Fraction(x) * THIRD, Fraction(y) * THIRD) for x, y in itertools.product(range(3), repeat=2)]
@@ -46,3 +49,39 @@ class TestRationals:
         assert not ek.area_above(triangle, Fraction(1, 18))
         assert ek.area_above(triangle, float(Fraction(1, 18))) == (Fraction(1 / 18) < Fraction(1, 18))
         assert Fraction(1 / 18) != Fraction(1, 18)
+
+
+RIGHT = [(0, 0), (1, 0), (0, 1)]
+FUNCTIONS: dict[str, tuple[Callable[..., bool], Callable[..., bool], int]] = {
+    "angle_below": (ek.angle_below, shape_oracle.angle_below, 3),
+    "angle_above": (ek.angle_above, shape_oracle.angle_above, 3),
+    "area_above": (ek.area_above, shape_oracle.area_above, 3),
+    "length_above": (ek.length_above, shape_oracle.length_above, 2),
+}
+
+
+@interpreted
+@pytest.mark.obligation("K7", "shapes of doubles go the way of loops, and nothing else does", method="enumeration")
+class TestWays:
+    """Corners and bound, each a double or not: the compiled predicate is asked where all are doubles."""
+
+    @pytest.mark.parametrize("name", FUNCTIONS)
+    def test_all(self, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        function, oracle, n = FUNCTIONS[name]
+        asked = calls_of(monkeypatch, shape, f"{name}_adaptive", "shape_rational")
+        for unit, bound in itertools.product((Fraction(1), THIRD), (Fraction(1, 2), Fraction(1), THIRD)):
+            points = [(x * unit, y * unit) for x, y in RIGHT[:n]]
+            asked.clear()
+            assert function(points, bound) == oracle(points, bound)
+            assert set(asked) == {"shape_rational" if THIRD in (unit, bound) else f"{name}_adaptive"}
+
+    def test_bounds_beyond_the_doubles(self) -> None:
+        """Larger than the largest, and smaller than the smallest: both are bounds like others."""
+        edge = [(0, 0), (10**400, 0)]
+        assert ek.length_above(edge, 10**399)
+        assert not ek.length_above(edge, 10**400)
+        assert ek.length_above([(0, 0), (Fraction(1, 10**400), 0)], Fraction(1, 10**401))
+
+    def test_control_a_double_beside_the_bound_is_told_apart(self) -> None:
+        assert shape._double(ek.coordinates.rational_value(0.5)) == 0.5
+        assert shape._double(ek.coordinates.rational_value(THIRD)) is None
