@@ -16,7 +16,7 @@ __all__ = ["Workspace", "calls_of", "interpreted", "watched_expansions"]
 
 R = TypeVar("R")
 
-#: Machine code does not look names up again.
+#: Machine code does not look names up again; and the steps of a function are compiled as parts of it, not one by one.
 interpreted = pytest.mark.skipif(COMPILED, reason="looks into interpreted functions; set NUMBA_DISABLE_JIT=1")
 
 

@@ -39,6 +39,7 @@ def generic(draw: random.Random) -> Points:
     return [(draw.uniform(-1, 1) * 2.0 ** draw.randint(-9, 9), draw.uniform(-1, 1)) for _ in range(4)]
 
 
+@interpreted
 @pytest.mark.obligation(
     "K7", "a crossing of a bisector that is called certain is the nearest double", method="property-based"
 )

@@ -77,6 +77,7 @@ def near_ties(draw: random.Random) -> tuple[float, tuple[Point, Point, Point]]:
     return degrees, (a, (x, y), (size * math.cos(turned), size * math.sin(turned)))
 
 
+@interpreted
 @pytest.mark.obligation(
     "K1", "what angles are computed from: products exact on integers, pairs within their bound", method="enumeration"
 )
@@ -294,6 +295,7 @@ class TestCorners:
         assert self.answers(monkeypatch, codes, 1) != self.answers(monkeypatch, codes[::-1], 1)
 
 
+@interpreted
 @pytest.mark.obligation("K6", "angles: rationals decide outside of the window, and only there", method="named cases")
 class TestWindow:
     """One coordinate outside is enough; a guarded context looks at each, an open one trusts them."""

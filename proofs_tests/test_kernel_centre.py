@@ -61,6 +61,7 @@ def symmetric(draw: random.Random) -> Triangle:
     return draw.choice([points, [(q, p) for p, q in points]])
 
 
+@interpreted
 @pytest.mark.obligation("K1", "the error of a quotient in pairs is sound, and tight", method="calculus")
 class TestQuotient:
     """Whatever numerator and denominator are within their errors, the result is within its own, which is no more than
@@ -87,6 +88,7 @@ class TestQuotient:
         assert abs(Fraction(4, 3) - Fraction(x) + Fraction(tail)) > Fraction(error)
 
 
+@interpreted
 @pytest.mark.obligation(
     "K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus"
 )
@@ -104,7 +106,6 @@ class TestPairs:
                 ):
                     assert abs(Fraction(value) + Fraction(tail) - exact) <= Fraction(error)
 
-    @interpreted
     def test_errors_told_are_sound_and_tight(self, monkeypatch: pytest.MonkeyPatch) -> None:
         told: list[tuple[float, ...]] = []
 
@@ -128,7 +129,6 @@ class TestPairs:
                     assert abs(Fraction(head) + Fraction(tail) - exact.value) <= Fraction(error)
                     assert abs(Fraction(error) - Fraction(DD_BOUND) * exact.permanent) <= Fraction(error) / 2**40
 
-    @interpreted
     def test_flat_triangles(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Up to a relative error of the area of 2^-10, that included; everything is exact here."""
         draw, met = random.Random(1), set()
@@ -162,6 +162,7 @@ class TestPairs:
         assert abs(Fraction(x) - exact_centre(points)[0]) > Fraction(error)
 
 
+@interpreted
 @pytest.mark.obligation(
     "K7", "a coordinate of a circumcentre is compared exactly with a sum of two doubles", method="property-based"
 )
@@ -184,7 +185,6 @@ class TestBeyond:
                     met.add((axis, side))
         assert met == set(itertools.product((0, 1), (-1, 0, 1)))
 
-    @interpreted
     def test_room(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """The workspaces hold the longest expansions, and do not overlap."""
         watched_expansions(monkeypatch, centre)
@@ -200,6 +200,7 @@ class TestBeyond:
         assert abs(Fraction(found) - exact[1]) > 16 * U * abs(exact[1])
 
 
+@interpreted
 @pytest.mark.obligation(
     "K7", "a circumcentre that is called certain is the nearest double, ties to even", method="property-based"
 )

@@ -69,6 +69,7 @@ def axes(draw: random.Random) -> Points:
     return draw.choice([points, points[2:] + points[:2]])
 
 
+@interpreted
 @pytest.mark.obligation(
     "K1", "the parts of a crossing: errors sound and tight, small products refused", method="calculus"
 )
@@ -140,6 +141,7 @@ class TestParts:
         assert abs(Fraction(high) + Fraction(low) - exact) <= Fraction(error) < abs(Fraction(high) - exact)
 
 
+@interpreted
 @pytest.mark.obligation(
     "ARR2", "a double is called nearest only if it is nearest to all that the error allows", method="named cases"
 )
@@ -179,6 +181,7 @@ class TestNearestCertain:
         assert not is_nearest_certain(1.0, tail, 2.0**-54 * 2.0**-52)
 
 
+@interpreted
 @pytest.mark.obligation(
     "ARR2", "whether a double is the exact crossing is decided by expansions", method="property-based"
 )
@@ -218,7 +221,6 @@ class TestExact:
             assert exact_crossing(points) == (Fraction(x), Fraction(0))
             assert self.is_exact(points, 0, x, scratch) is inside
 
-    @interpreted
     def test_room(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """The workspaces hold the longest expansions, and do not overlap."""
         watched_expansions(monkeypatch, crossing)
@@ -232,6 +234,7 @@ class TestExact:
         assert not self.is_exact(points, 0, 1 / 3, np.zeros(SCRATCH_SIZE))
 
 
+@interpreted
 @pytest.mark.obligation(
     "ARR2",
     "a crossing in pairs is within its error, exact where it is a double, open where unknown",
@@ -277,7 +280,6 @@ class TestPairs:
             met.add((tuple(doubles), certain))
         assert len(met) >= 4
 
-    @interpreted
     def test_uncertain_coordinates_are_tried_exactly(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """If either is uncertain: zero first, then whether the double is the crossing itself, on each axis."""
         points = [(0.0, 0.25), (3.0, 0.5), (1.0, 1.0), (2.0, -1.0)]
@@ -292,7 +294,6 @@ class TestPairs:
                     assert (error == 0.0) == (bool(tried) and told)
                     assert error > 0.0 or tail == 0.0
 
-    @interpreted
     def test_nearly_parallel_lines(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Up to a relative error of the determinant of 2^-10, that included; everything is exact here."""
         draw, met = random.Random(1), set()

@@ -160,6 +160,7 @@ def unsafe(n: int) -> Iterator[list[float]]:
         yield [*inside[:place], x, *inside[place + 1 : n]]
 
 
+@interpreted
 @pytest.mark.obligation(
     "K6", "areas and lengths: rationals decide outside of the window, and only there", method="named cases"
 )
