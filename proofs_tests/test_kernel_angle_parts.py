@@ -84,6 +84,7 @@ class TestParts:
         assert math.isnan(angle_bound(math.nextafter(1e-100, 0.0)).sine)
 
     def test_control_a_sine_without_its_tail_errs_by_more(self) -> None:
+        """A sine rounded to one double."""
         degrees, (a, b, c) = 20.0, ((0.0, 0.0), (1.0, 0.0), (2.0, 1.0))
         headless = angle_bound(degrees)._replace(sine_tail=0.0)
         pairs = [x for p in (b, c) for i in range(2) for x in two_diff(p[i], a[i])]
@@ -104,6 +105,7 @@ class TestWorkspaces:
             assert corner_expansion(angle_bound(degrees), *[0.1, 1e-20, 0.3, -1e-20] * 2, scratch) == 1
 
     def test_control_too_short_a_workspace_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A workspace one double too short."""
         watched_expansions(monkeypatch, angle)
         with pytest.raises(AssertionError):
             corner_expansion(angle_bound(45.0), *[0.1, 1e-20, 0.3, -1e-20] * 2, Workspace.of(95))

@@ -175,6 +175,7 @@ class TestStages:
             assert corner_code(k, right, 0.0, 0.0, 2.0**500, 2.0**500, x, -y) == code_of(decided, 1)
 
     def test_control_another_bound_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Filters with half of their factor."""
         monkeypatch.setattr(angle, "SHAPE_FACTOR", 2.0)
         with pytest.raises(AssertionError):
             self.test_borders(0.0, monkeypatch)
@@ -218,6 +219,7 @@ class TestCorners:
                 assert asked == ["ABCDEF", "CDEFAB", "EFABCD"][: last + 1]
 
     def test_control_the_corners_are_told_apart(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The corners' answers in reverse order."""
         codes = (code_of(Stage.GRID, 0), code_of(Stage.RATIONAL, 0), code_of(Stage.GRID, 1))
         assert self.answers(monkeypatch, codes, 1) != self.answers(monkeypatch, codes[::-1], 1)
 
@@ -244,6 +246,7 @@ class TestWindow:
         assert corner_code(k, angle_bound(1e-200), *right) == code_of(Stage.RATIONAL, -1)
 
     def test_control_an_open_context_lies_outside(self) -> None:
+        """A context that trusts coordinates outside of the window."""
         thin = (0.0, 0.0, 2.0**-600, 0.0, 2.0**-600, 2.0**-600)
         bound = angle_bound(90.0)
         assert corner_code(make_context(np.ones(1)), bound, *thin) & 3 == 1

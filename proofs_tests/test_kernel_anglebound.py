@@ -60,6 +60,7 @@ class TestCornerSign:
                 assert asked(*triple) == compared(*triple)
 
     def test_control_the_first_precision_alone_is_not_enough(self) -> None:
+        """Signs taken from four bits, without the bound of their error."""
         draw, wrong = random.Random(4), 0
         for _ in range(60):
             cross, dot, degrees = near_ties(draw)
@@ -98,6 +99,7 @@ class TestEnclosures:
         assert cosine_and_sine(mpq(1), 100) is first
 
     def test_control_values_of_half_the_precision_are_outside(self) -> None:
+        """A sine of 20 bits, held against the bound of 40."""
         _, sine, _ = cosine_and_sine(mpq(20), 20)
         _, exact, error = cosine_and_sine(mpq(20), 40)
         assert abs(sine - exact) > error

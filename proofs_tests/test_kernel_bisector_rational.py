@@ -48,6 +48,7 @@ class TestArity:
         assert all(handed == taken for handed, taken in found.values())
 
     def test_control_a_callback_left_out_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A module that registers nothing by the watched name."""
         monkeypatch.setattr(rational, "_another", None, raising=False)
         assert arities("_another") == {}
 
@@ -73,6 +74,7 @@ class TestAttempts:
 
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_control_answered_at_the_second_try(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A callback that fails once: two tries, not sixteen."""
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
         original = getattr(bisector_rational, f"_ask_{name}")
 

@@ -83,6 +83,7 @@ class TestQuotient:
             assert Fraction(error) <= Fraction(5, 4) * first_order
 
     def test_control_a_lost_tail_is_noticed(self) -> None:
+        """A result without its tail, or with the tail's sign changed."""
         x, tail, error = quotient_offset(1.0, 1.0, 0.0, 0.0, 3.0, 0.0, 0.0)
         assert abs(Fraction(4, 3) - Fraction(x) - Fraction(tail)) <= Fraction(error)
         assert abs(Fraction(4, 3) - Fraction(x) + Fraction(tail)) > Fraction(error)
@@ -157,6 +158,7 @@ class TestPairs:
             assert circumcentre_in_pairs(open_context(), *outside)[2] < math.inf
 
     def test_control_the_heads_alone_are_outside(self) -> None:
+        """A coordinate rounded to one double, its tail forgotten."""
         points = generic(random.Random(2))
         x, _, error, *_ = circumcentre_in_pairs(open_context(), *flat(points))
         assert abs(Fraction(x) - exact_centre(points)[0]) > Fraction(error)
@@ -193,6 +195,7 @@ class TestBeyond:
             assert _beyond(axis, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, scratch) == (0, 0.0)
 
     def test_control_the_other_axis_differs(self) -> None:
+        """The x coordinate taken for y."""
         points = generic(random.Random(4))
         exact = exact_centre(points)
         _, found = _beyond(0, 0.0, 0.0, *flat(points), np.empty(SCRATCH_SIZE))
@@ -235,6 +238,7 @@ class TestNearest:
         assert nearest_circumcentre(open_context(), 0.0, 0.0, 1.0, 0.0, 2.0, 0.0) == (0.0, 0.0, False)
 
     def test_control_the_odd_neighbour_of_a_tie_is_refused(self) -> None:
+        """A tie rounded to the odd double."""
         tie = 1 + Fraction(1, 2**53)
         assert is_nearest(1.0, tie)
         assert not is_nearest(1.0 + 2.0**-52, tie)

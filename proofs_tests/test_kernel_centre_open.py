@@ -155,5 +155,6 @@ class TestLeftOpen:
                 assert found == (7.0 if open_[0] else x, 8.0 if (1, y) in wanted else y, certain)
 
     def test_control_a_scripted_answer_is_heeded(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The opposite answer about a tie."""
         up = self.decided(monkeypatch, 1.0, 0.0, (1, 2.0**-53), (1, 0.0))
         assert up != self.decided(monkeypatch, 1.0, 0.0, (1, 2.0**-53), (-1, 0.0))

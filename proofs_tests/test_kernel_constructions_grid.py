@@ -60,6 +60,7 @@ class TestGrid:
                 assert (x, y) == tuple((1 - t) * mpq(p) + t * mpq(q) for p, q in zip(a, b, strict=True))
 
     def test_control_a_crossing_beside_is_refused(self) -> None:
+        """A segment that passes the other by."""
         a, b, c, d = (exact(p) for p in ((0.0, 0.0), (2.0, 2.0), (0.0, 2.0), (2.0, 1.0)))
         assert common_points(a, b, c, d) == [(Fraction(4, 3), Fraction(4, 3))]
         assert common_points(a, b, c, (Fraction(1), Fraction(3))) == []
@@ -85,5 +86,6 @@ class TestRoundedPoint:
         assert point == rounded((mpq(1), mpq(2))) != rounded((mpq(1), mpq(3)))
 
     def test_control_a_rounded_error_differs(self) -> None:
+        """An error rounded to a double."""
         error = rounded((mpq(1, 3), mpq(0))).error[0]
         assert mpq(math.nextafter(float(error), 1.0)) != error

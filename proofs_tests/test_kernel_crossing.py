@@ -117,6 +117,7 @@ class TestExact:
         assert crossing_in_pairs(k, *flat(points)) == (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def test_control_a_neighbour_is_refused(self) -> None:
+        """The double beside the nearest."""
         points = [(-1.0, -1.0), (1.0, 1.0), (0.0, 0.5), (1.0, 0.0)]
         assert exact_crossing(points)[0] == Fraction(1, 3)
         assert not self.is_exact(points, 0, 1 / 3, np.zeros(SCRATCH_SIZE))
@@ -213,6 +214,7 @@ class TestPairs:
             assert crossing_in_pairs(open_context(), *outside) != unknown
 
     def test_control_the_heads_alone_are_outside(self) -> None:
+        """A coordinate rounded to one double, its tail forgotten."""
         points = generic(random.Random(5))
         x, _, error, *_ = crossing_in_pairs(open_context(), *flat(points))
         assert abs(Fraction(x) - exact_crossing(points)[0]) > Fraction(error)

@@ -82,6 +82,7 @@ class TestParts:
             assert crossing._zero_if_possible(x, tail, error) == wanted
 
     def test_control_a_lost_tail_is_noticed(self) -> None:
+        """A result without its tail, or with the tail's sign changed."""
         high, low, error = dd_cross(1 / 3, 0.0, 1 / 7, 0.0, 0.0, 0.0, 0.0, 0.0)
         exact = Fraction(1 / 3) * Fraction(1 / 7)
         assert abs(Fraction(high) + Fraction(low) - exact) <= Fraction(error) < abs(Fraction(high) - exact)
@@ -122,6 +123,7 @@ class TestNearestCertain:
         assert not is_nearest_certain(0.5, -0.5, 0.0)
 
     def test_control_a_margin_of_nothing_lies(self) -> None:
+        """A sum that is rounded twice, taken as if it were not."""
         tail = 2.0**-53 * (1 - 2.0**-53)
         assert 1.0 + (tail + 2.0**-54 * 2.0**-53) == 1.0  # rounded twice
         assert not is_nearest_certain(1.0, tail, 2.0**-54 * 2.0**-52)

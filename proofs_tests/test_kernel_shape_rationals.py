@@ -45,6 +45,7 @@ class TestRationals:
         assert (ek.angle_above(triangle, 0), ek.angle_above(triangle, 180)) == (True, False)
 
     def test_control_the_bound_as_a_double_is_wrong(self) -> None:
+        """A bound of 1/18 rounded to a double."""
         triangle = [CORNERS[0], CORNERS[1], CORNERS[3]]
         assert not ek.area_above(triangle, Fraction(1, 18))
         assert ek.area_above(triangle, float(Fraction(1, 18))) == (Fraction(1 / 18) < Fraction(1, 18))
@@ -83,5 +84,6 @@ class TestWays:
         assert ek.length_above([(0, 0), (Fraction(1, 10**400), 0)], Fraction(1, 10**401))
 
     def test_control_a_double_beside_the_bound_is_told_apart(self) -> None:
+        """A rational whose nearest double is another number."""
         assert shape._double(ek.coordinates.rational_value(0.5)) == 0.5
         assert shape._double(ek.coordinates.rational_value(THIRD)) is None
