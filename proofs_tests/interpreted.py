@@ -16,7 +16,7 @@ __all__ = ["Workspace", "calls_of", "interpreted", "watched_expansions"]
 
 R = TypeVar("R")
 
-#: Machine code does not look names up again.
+#: Machine code does not look names up again; and the steps of a function are compiled as parts of it, not one by one.
 interpreted = pytest.mark.skipif(COMPILED, reason="looks into interpreted functions; set NUMBA_DISABLE_JIT=1")
 
 
@@ -88,20 +88,26 @@ def watched_expansions(patch: pytest.MonkeyPatch, module: ModuleType) -> None:
     """Let the module's expansions check that the longest possible ones fit, and that what is in use is disjoint."""
     known = _Lengths()
 
+    original: dict[str, Callable[..., int]] = {
+        name: getattr(module, name)
+        for name in ("pair", "determinant_2x2", "expansion_sum", "expansion_product")
+        if hasattr(module, name)
+    }
+
     def pair(high: float, low: float, h: FloatArray) -> int:
         known.put(h, 2)
-        return _original["pair"](high, low, h)
+        return original["pair"](high, low, h)
 
     def determinant_2x2(*arguments: Any) -> int:
         known.put(arguments[8], 16, arguments[9])
         assert len(arguments[9]) >= 32
-        return _original["determinant_2x2"](*arguments)
+        return original["determinant_2x2"](*arguments)
 
     def expansion_sum(e: FloatArray, ne: int, f: FloatArray, nf: int, h: FloatArray) -> int:
         assert ne <= known.of(e)
         assert nf <= known.of(f)
         known.put(h, known.of(e) + known.of(f), e, f)
-        return _original["expansion_sum"](e, ne, f, nf, h)
+        return original["expansion_sum"](e, ne, f, nf, h)
 
     def expansion_product(
         e: FloatArray, ne: int, f: FloatArray, nf: int, h: FloatArray, scaled: FloatArray, total: FloatArray
@@ -110,10 +116,8 @@ def watched_expansions(patch: pytest.MonkeyPatch, module: ModuleType) -> None:
         known.put(h, longest, e, f, scaled, total)
         assert len(scaled) >= 2 * known.of(e)
         assert len(total) >= longest
-        return _original["expansion_product"](e, ne, f, nf, h, scaled, total)
+        return original["expansion_product"](e, ne, f, nf, h, scaled, total)
 
-    watched: tuple[Callable[..., int], ...] = (pair, determinant_2x2, expansion_sum, expansion_product)
-    _original = {function.__name__: getattr(module, function.__name__, None) for function in watched}
-    for function in watched:
-        if _original[function.__name__] is not None:
+    for function in (pair, determinant_2x2, expansion_sum, expansion_product):
+        if function.__name__ in original:
             patch.setattr(module, function.__name__, function)

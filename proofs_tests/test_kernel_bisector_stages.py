@@ -111,7 +111,7 @@ class TestStages:
         for module in (bisector, orient2d):
             monkeypatch.setattr(module, "DD_BOUND", 2.0**-4)
         stages, k, draw, met = Stages(monkeypatch), make_context(np.ones(1)), random.Random(1), set()
-        for _ in range(1500):
+        for _ in range(500):
             points = small(draw, n)
             det = exact(*points)
             wanted = FILTER if det.exceeds(2.0**-2) else DOUBLE_DOUBLE if det.exceeds(2.0**-4) else EXPANSION
@@ -125,7 +125,7 @@ class TestStages:
         """With the published bounds: the sign is right, and decided no later than twice the bound of a stage asks."""
         exact, adaptive, _, bound = CASES[name]
         stages, k, draw, met = Stages(monkeypatch), make_context(np.ones(1)), random.Random(2), set()
-        for _ in range(600):
+        for _ in range(300):
             points = near_ties(name, draw)
             det = exact(*points)
             sign, stage = stages.decided(adaptive, k, points)
@@ -136,6 +136,7 @@ class TestStages:
         assert met == {(sign, stage) for sign in (-1, 1) for stage in range(3)}
 
     def test_control_a_laxer_or_a_stricter_border_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Borders that are half and twice the filter's own."""
         monkeypatch.setattr(bisector, "_NEARER_BOUND", 2.0**-3)
         stages, k, draw = Stages(monkeypatch), make_context(np.ones(1)), random.Random(1)
         for border in (2.0**-2, 2.0**-4):
@@ -164,6 +165,7 @@ class TestWorkspaces:
         assert adaptive(k, *(x for point in points for x in point)) == exact(*points).sign == 0
 
     def test_control_parts_that_overlap_are_noticed(self) -> None:
+        """A layout whose parts share a double, and one beyond the end."""
         whole = Workspace.of(8)
         assert len(whole[0:4]) == len(whole[4:]) == 4
         with pytest.raises(AssertionError, match="overlaps"):

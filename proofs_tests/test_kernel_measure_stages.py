@@ -3,7 +3,7 @@
 import itertools
 import math
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def length(bound: float, a: Point, b: Point) -> Magnitude:
     return inner(u, u) - number(bound) * number(bound)
 
 
-MEASURES = {
+MEASURES: dict[str, tuple[Callable[..., Magnitude], Callable[..., int], Callable[..., bool], int]] = {
     "area": (area, area_code, area_above_adaptive, 3),
     "length": (length, length_code, length_above_adaptive, 2),
 }
@@ -83,9 +83,9 @@ class TestStages:
     def test_borders(self, name: str, grid: float, monkeypatch: pytest.MonkeyPatch) -> None:
         exact, code, above, n = MEASURES[name]
         least, most = 9.0, 19.0
-        for constant, value in (("ORIENT2D_BOUND", 2.0**-3), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
+        for constant, number_given in (("ORIENT2D_BOUND", 2.0**-3), ("DD_BOUND", 2.0**-5), ("SMALLEST_WEIGHT", least),
                                 ("LARGEST_WEIGHT", most)):  # fmt: skip
-            monkeypatch.setattr(measure, constant, value)
+            monkeypatch.setattr(measure, constant, number_given)
         k = make_context(np.ones(1))._replace(orient2d_bound=2.0**-4, grid_limit=grid)
         draw, met = random.Random(1), set()
         for _ in range(1000):
@@ -144,6 +144,7 @@ class TestStages:
             assert length_code(k, math.nextafter(x, 0.0), 0.0, 0.0, x, 0.0) == code_of(decided, 1)
 
     def test_control_another_factor_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A filter with half of its factor."""
         monkeypatch.setattr(measure, "SHAPE_FACTOR", 2.0)
         with pytest.raises(AssertionError):
             self.test_borders("area", 0.0, monkeypatch)
@@ -160,6 +161,7 @@ def unsafe(n: int) -> Iterator[list[float]]:
         yield [*inside[:place], x, *inside[place + 1 : n]]
 
 
+@interpreted
 @pytest.mark.obligation(
     "K6", "areas and lengths: rationals decide outside of the window, and only there", method="named cases"
 )
@@ -197,6 +199,7 @@ class TestWindow:
         assert area_code(guarded_context(), largest, *huge) == code_of(Stage.RATIONAL, 1)
 
     def test_control_an_open_context_lies_outside(self) -> None:
+        """A context that trusts coordinates outside of the window."""
         tiny_edge = (0.0, 0.0, 2.0**-600, 0.0)
         assert length_code(make_context(np.ones(1)), 0.0, *tiny_edge) & 3 == 1
         assert length_code(guarded_context(), 0.0, *tiny_edge) & 3 == 2
@@ -215,6 +218,7 @@ class TestWorkspaces:
         assert code(k, 0.0, *[0.1, 0.3] * n) == code_of(Stage.EXPANSION, 0)
 
     def test_control_too_short_a_workspace_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A workspace one double too short."""
         watched_expansions(monkeypatch, measure)
         k: Context = make_context(np.ones(1))._replace(scratch=Workspace.of(67), grid_limit=-1.0)
         with pytest.raises(AssertionError):

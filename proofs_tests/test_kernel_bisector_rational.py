@@ -48,6 +48,7 @@ class TestArity:
         assert all(handed == taken for handed, taken in found.values())
 
     def test_control_a_callback_left_out_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A module that registers nothing by the watched name."""
         monkeypatch.setattr(rational, "_another", None, raising=False)
         assert arities("_another") == {}
 
@@ -62,13 +63,18 @@ class TestAttempts:
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_never_answered(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
-        monkeypatch.setattr(bisector_rational, f"_ask_{name}", lambda _, number, attempt, *__: attempts.append(attempt))
+
+        def silent(_: int, __: int, attempt: int, *___: float) -> None:
+            attempts.append(attempt)
+
+        monkeypatch.setattr(bisector_rational, f"_ask_{name}", silent)
         with pytest.raises(RuntimeError, match="interrupted at every attempt"):
             getattr(bisector_rational, f"{name}_from_doubles")(mailbox, *[0.5] * arity)
         assert attempts == list(range(16))
 
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_control_answered_at_the_second_try(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A callback that fails once: two tries, not sixteen."""
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
         original = getattr(bisector_rational, f"_ask_{name}")
 
