@@ -23,11 +23,12 @@ class TestLabels:
     def test_every_int32(self, number: int) -> None:
         surface = QuadEdge()
         edge = surface.make_edge()
-        for write, read in (
+        operations: list[tuple[Callable[[], None], Callable[[], int]]] = [
             (lambda: surface.set_org(edge, Vertex(number)), lambda: edge.org),
             (lambda: surface.set_left(edge, Face(number)), lambda: edge.left),
             (lambda: surface.set_left(edge.sym, Face(number)), lambda: edge.right),
-        ):
+        ]
+        for write, read in operations:
             if number in INT32:
                 write()
                 assert read() == number
@@ -119,7 +120,7 @@ class TestStrangers:
         ours, theirs = three_edges(), three_edges()
         for q in (8, 10):
             for operation in (ours.delete_edge, ours.swap, lambda e: ours.set_org(e, Vertex(0))):
-                with pytest.raises(TopologyError, match="^edge 2 belongs to another quad-edge$") as raised:
+                with pytest.raises(TopologyError, match=r"^edge 2 belongs to another quad-edge$") as raised:
                     operation(theirs.edge(q))
                 assert raised.value.indices == (q,)
 
@@ -180,7 +181,9 @@ class TestTriangles:
             for side in (edge, edge.sym):
                 if side.org == 3:
                     surface.set_org(side, Vertex(-1))
-        with pytest.raises(TopologyError, match=r"^the triangle \[[-0-2, ]*\] has a corner that is no vertex$") as raised:
+        with pytest.raises(
+            TopologyError, match=r"^the triangle \[[-0-2, ]*\] has a corner that is no vertex$"
+        ) as raised:
             surface.triangles()
         assert "-1" in str(raised.value)
 
