@@ -65,8 +65,8 @@ def plane_of(built: Insertion) -> Plane:
         built.k, built.xy, built.ring, built.org, spoke,
         fixed=np.zeros(built.edges, dtype=np.bool_), loose=np.zeros(built.edges, dtype=np.bool_),
         crossed=np.empty(built.edges, dtype=np.int32),
-        left=np.empty(2 * built.edges, dtype=np.int32), right=np.empty(2 * built.edges, dtype=np.int32),
-        stack=np.empty(6 * built.edges, dtype=np.int64),
+        left=np.empty(built.edges, dtype=np.int32), right=np.empty(built.edges, dtype=np.int32),
+        stack=np.empty(3 * built.edges, dtype=np.int64),
         ghost=n,
     )  # fmt: skip
 

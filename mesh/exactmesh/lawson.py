@@ -145,12 +145,10 @@ def flip_until_delaunay(
         ab = left_next(ring, e ^ 2)
         bc = left_next(ring, ab)
         a, b, c, d = origin(org, e), origin(org, bc), dest(org, e), origin(org, da)
-        if (
-            incircle_perturbed_adaptive(
-                k, xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[d, 0], xy[d, 1]
-            )
-            <= 0
-        ):
+        sign = incircle_perturbed_adaptive(
+            k, xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], xy[d, 0], xy[d, 1]
+        )
+        if sign <= 0:
             continue
         swap(ring, org, e)
         flips += 1

@@ -28,7 +28,7 @@ class Plane(NamedTuple):
         fixed: whether each edge is constrained.
         loose: scratch, False for every edge: see ``cavity``.
         crossed, left, right: what the last march met, see there.
-        stack: scratch, three entries for each vertex.
+        stack: scratch, three entries for each edge.
         ghost: the ghost vertex.
     """
 
