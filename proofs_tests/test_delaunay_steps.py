@@ -12,7 +12,8 @@ from proofs_tests.enumeration import CIRCLE_OF_EIGHT, canonical_triangles, grid
 
 from exactkernel.context import scaled_into_window
 from exactkernel.jit import COMPILED
-from exactmesh import QuadEdge, TooFewPointsError, TooManyPointsError, delaunay
+from exactkernel.types import FloatArray, IntArray
+from exactmesh import PSLG, QuadEdge, TooFewPointsError, TooManyPointsError, constrained_delaunay, delaunay
 from exactmesh.edgealgebra import dest, left_next, origin
 from exactmesh.errors import CollinearPointsError
 
@@ -301,7 +302,7 @@ class TestNumbers:
                 kept, vertex, representative = MODULE.number_vertices(order, twin)
                 assert kept.tolist() == firsts
                 assert representative.tolist() == list(places)
-                assert all(vertex[i] == at[i] for i in range(n) if twin[i] == i)
+                assert vertex.tolist() == [at[i] if twin[i] == i else -1 for i in range(n)]
                 assert {a.dtype for a in (vertex, representative)} == {np.dtype(np.int32)}
 
 
@@ -331,6 +332,8 @@ class TestLimits:
     def test_flat(self) -> None:
         with pytest.raises(CollinearPointsError, match=r"^all 3 points are \[1\.0, 2\.0\]: they span no triangle$"):
             delaunay([(1, 2)] * 3)
+        with pytest.raises(CollinearPointsError, match=r"are \[-0\.0, 0\.0\]: "):  # the first of them
+            delaunay([(-0.0, 0.0), (0.0, -0.0), (0.0, 0.0)])
         for points in ([(0, 0), (1, 1), (2, 2)], [(0, 0), (0, 1), (0, 1)], [(1, 0), (0, 0), (0, 0)]):
             with pytest.raises(CollinearPointsError, match=r"^all 3 points lie on one line: they span no triangle$"):
                 delaunay(points)
@@ -354,6 +357,25 @@ class TestLimits:
         for start in STARTS.values():
             for n in range(3, len(start) + 1):
                 assert delaunay(start[:n]).work.flips == Under(start[:n], n).flips
+
+    def test_the_seed_is_0(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Without a seed the order is that of seed 0; any other is handed on."""
+        seeds: list[object] = []
+        order = MODULE.insertion_order
+
+        def observed(xy: FloatArray, seed: int) -> IntArray:
+            seeds.append(seed)
+            result: IntArray = order(xy, seed)
+            return result
+
+        monkeypatch.setattr(MODULE, "insertion_order", observed)
+        points = np.random.default_rng(3).random((9, 2))
+        delaunay(points)
+        delaunay(points, seed=5)
+        MODULE.insert_points(points)
+        constrained_delaunay(PSLG(points, [(0, 1)]), carve=False)
+        constrained_delaunay(PSLG(points, [(0, 1)]), carve=False, seed=7)
+        assert seeds == [0, 5, 0, 0, 7]
 
     @pytest.mark.parametrize("exponent", [-1060, -300, 0, 300, 1020])
     @pytest.mark.parametrize("spread", [0, 200, 900])

@@ -13,6 +13,7 @@ from exactmesh import (
     PSLG,
     InadmissibleError,
     QuadEdge,
+    TooFewPointsError,
     constrained_delaunay,
     delaunay,
     flip,
@@ -151,6 +152,12 @@ class TestTheResult:
                 one, other = getattr(ours, name), getattr(there, name)
                 assert (one.shape, one.tolist()) == (other.shape, other.tolist()), name
                 assert one.dtype == other.dtype, name
+
+    def test_three_points_are_enough(self) -> None:
+        assert lawson([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]).triangles.tolist() == [[1, 2, 0]]
+        for n in range(3):
+            with pytest.raises(TooFewPointsError, match=f"^{n} points span no triangle; at least 3 are needed$"):
+                lawson(np.arange(2.0 * n).reshape(n, 2), np.empty((0, 3), dtype=np.int32))
 
     @pytest.mark.parametrize(("missing", "more"), [(1, ""), (2, ", nor are 1 more"), (3, ", nor are 2 more")])
     def test_segments_that_are_no_chains_are_counted(self, missing: int, more: str) -> None:
