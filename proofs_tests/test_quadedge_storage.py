@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
@@ -146,6 +147,23 @@ class TestStrangers:
         assert str(raised.value) == (
             f"quarter-edge {named} (edge {named // 4}) breaks the axioms: onext = {ring[named]}"
         )
+
+
+@pytest.mark.obligation("M1", "arrays of wrong lengths are refused by their lengths", method="exhaustive")
+class TestLengths:
+    """A ring of k entries is taken just when 4 divides k and there are k / 2 vertices and faces."""
+
+    def test_every_length(self) -> None:
+        for lengths in product(range(9), repeat=3):
+            ring = np.full(lengths[0], -1, dtype=np.int32)  # of edges that were all deleted
+            vertex, face = (np.zeros(length, dtype=np.int32) for length in lengths[1:])
+            if lengths in ((0, 0, 0), (4, 2, 2), (8, 4, 4)):
+                assert len(QuadEdge.from_arrays(ring, vertex, face)) == 0
+            else:
+                with pytest.raises(TopologyError) as raised:
+                    QuadEdge.from_arrays(ring, vertex, face)
+                told = "{} ring entries need half as many origins, not {}, {}".format(*lengths)
+                assert str(raised.value) == told
 
 
 def triangular_faces(surface: QuadEdge) -> set[frozenset[int]]:

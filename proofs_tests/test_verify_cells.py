@@ -161,7 +161,7 @@ def name(row: int, quad: Quad) -> str:
 )
 class TestMessages:
     """CONVEX fails for each quadrilateral that is not strictly convex, ORIENTATION for each that is not
-    counterclockwise, or, whatever the orientation, not simple; the violation names the first corner at fault, and the exact area."""
+    counterclockwise, or, whatever the orientation, not simple; the violation names the corner, and the exact area."""
 
     @pytest.mark.parametrize("before", [0, 2])
     def test_convex(self, before: int) -> None:
