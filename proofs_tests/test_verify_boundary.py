@@ -21,7 +21,7 @@ from exactmesh.verify.boundary import (
 from exactmesh.verify.hull import check_distinct, check_hull, check_used, first_at_position
 from exactmesh.verify.links import linked
 from exactmesh.verify.local import localized
-from exactmesh.verify.matching import corners_at, lexicographic_order
+from exactmesh.verify.matching import corners_at, lexicographic_order, match_sorted
 from exactmesh.verify.mesh import Mesh, index_quads, index_triples, prepared_mesh
 from exactmesh.verify.properties import Kind, Verdict
 
@@ -74,11 +74,12 @@ class TestCycles:
     convex, counterclockwise cycle, and then which (theorem C); is_one_loop whether it is one. However few steps at a
     time."""
 
-    @pytest.mark.parametrize("size", [1, 2, 3, 1 << 14])
-    def test_convex(self, size: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(module("boundary"), "_CHUNK", size)
+    @pytest.mark.parametrize("size", [1, 2, 3, None])
+    def test_convex(self, size: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+        if size is not None:
+            monkeypatch.setattr(module("boundary"), "_CHUNK", size)
         mesh = mesh_of(POINTS)
-        for cycle in CYCLES[size % 5 :: 3] + CONVEX[size % 5 :: 4]:
+        for cycle in CYCLES[(size or 0) % 5 :: 3] + CONVEX[(size or 0) % 5 :: 4]:
             found = convex_cycle(mesh, chain([cycle]))
             assert (found is not None) is is_convex(EXACT, cycle)
             if found is not None:
@@ -122,10 +123,11 @@ class TestOutside:
     """Of all points of a finer and larger grid, outside_of names those that are strictly on the right of an edge,
     however many vertices lie on the sides, and however few points at a time."""
 
-    @pytest.mark.parametrize("size", [1, 3, 1 << 14])
+    @pytest.mark.parametrize("size", [1, 3, None])
     @pytest.mark.parametrize("turned", [0, 1])
-    def test_every_point(self, size: int, turned: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(module("boundary"), "_CHUNK", size)
+    def test_every_point(self, size: int | None, turned: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        if size is not None:
+            monkeypatch.setattr(module("boundary"), "_CHUNK", size)
         finer = [(x / 2, y / 2) for x, y in product(range(-1, 6), repeat=2)]
         points = [*POINTS, *finer]
         mesh, exact = mesh_of(points), oracles.rationals(points)
@@ -166,6 +168,18 @@ class TestPositions:
                 for wanted in product(range(4), repeat=k):
                     for used in product((True, False), repeat=n):
                         self.check(points, used, wanted)
+
+    def test_the_first(self) -> None:
+        """Of several used points at a position that is searched for, the first is found, for all that want it."""
+        for n, k in product(range(4), range(4)):
+            for points in product(self.PLACES[:2], repeat=n):
+                for wanted in product(self.PLACES[:2], repeat=k):
+                    for used in product((True, False), repeat=n):
+                        found, places = np.full(k, -1), np.array(wanted).reshape(-1, 2)
+                        order = lexicographic_order(places)
+                        match_sorted(np.array(points).reshape(-1, 2), np.array(used, np.bool_), places, order, found)
+                        there = [[i for i, q in enumerate(points) if used[i] and q == p] for p in wanted]
+                        assert found.tolist() == [min(those, default=-1) for those in there]
 
     def test_longer_lists(self) -> None:
         random = np.random.default_rng(0)

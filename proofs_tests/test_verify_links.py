@@ -230,12 +230,13 @@ class TestAdjacency:
     """Each slot's row is that of the cell that lists its edge; the row across an edge that of the cell that lists its
     reverse, unless a mark separates them; the parts are those that a merging of sets finds. However few at a time."""
 
-    @pytest.mark.parametrize("size", [1, 2, 3, 5, 1 << 18])
-    def test_triangulations(self, size: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(module("adjacency"), "_CHUNK", size)
-        random = np.random.default_rng(size)
+    @pytest.mark.parametrize("size", [1, 2, 3, 5, None])
+    def test_triangulations(self, size: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+        if size is not None:
+            monkeypatch.setattr(module("adjacency"), "_CHUNK", size)
+        random = np.random.default_rng(size or 0)
         points = grid(3, 3)
-        for rows in islice(triangulations(points), size % 3, None, 7):
+        for rows in islice(triangulations(points), (size or 0) % 3, None, 7):
             keep = random.random(len(rows)) < 0.8
             keep[0] = True
             cells = [t for t, kept in zip(rows, keep, strict=True) if kept]
@@ -292,11 +293,12 @@ class TestManifold:
     """EDGE_MANIFOLD fails once for each directed edge that is listed more than once, and names the first two cells;
     VERTEX_MANIFOLD once for each vertex round which the cells form no single fan. However few at a time."""
 
-    @pytest.mark.parametrize("size", [1, 2, 3, 1 << 20])
-    def test_fans(self, size: int, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr(module("manifold"), "_CHUNK", size)
+    @pytest.mark.parametrize("size", [1, 2, 3, None])
+    def test_fans(self, size: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+        if size is not None:
+            monkeypatch.setattr(module("manifold"), "_CHUNK", size)
         seen = set()
-        for cells in LISTS[size % 3 :: 2]:
+        for cells in LISTS[(size or 0) % 3 :: 2]:
             mesh = mesh_of(PLACES, cells)
             links, rows = links_of(mesh), cells_of(mesh)
             broken = np.zeros(len(PLACES), dtype=np.bool_)
@@ -306,7 +308,7 @@ class TestManifold:
             assert (finding.verdict is Verdict.HOLDS) is not bool(broken.any())
             assert finding.count == broken.sum()
             seen.add(min(int(broken.sum()), 2))
-        assert seen == {0, 1, 2} or size == 1
+        assert seen == {0, 1, 2}
 
     def test_edges(self) -> None:
         for cells in LISTS[::2]:
