@@ -12,7 +12,7 @@ from proofs_tests.constrained_oracle import Segment
 from proofs_tests.enumeration import CIRCLE_OF_EIGHT, canonical_triangles, grid
 
 from exactkernel.jit import COMPILED
-from exactmesh import PSLG, constrained_delaunay
+from exactmesh import PSLG, constrained_delaunay, verify
 from exactmesh.delaunay import insert_points
 from exactmesh.edgealgebra import dest, origin
 from exactmesh.errors import TooManyCrossingsError
@@ -176,7 +176,7 @@ class TestMemory:
     """The rows are doubled as long as twice as many fit into the memory; the error says how many there were, and names
     the segment that was being inserted."""
 
-    @pytest.mark.parametrize("room", [0, 1, 24, 25, 26, 48, 49, 50, 51, 98, 99, 100, 101, 200])
+    @pytest.mark.parametrize("room", [0, 1, 20, 21, 22, 41, 42, 43, 83, 84, 85, 200])
     def test_every_size(self, room: int, monkeypatch: pytest.MonkeyPatch) -> None:
         asked: list[int] = []
 
@@ -264,13 +264,14 @@ class TestRoomForCavities:
             expected = constrained_oracle.constrained_triangles(exact, [(0, 1)])
             assert canonical_triangles(mesh.triangles.tolist()) == expected
 
-    @pytest.mark.parametrize("exponent", [-1060, 0, 1020])
-    def test_no_overflow_is_told(self, exponent: int) -> None:
+    @pytest.mark.parametrize("seed", range(6))
+    def test_no_overflow_is_told(self, seed: int) -> None:
         """Coordinates of any size, whatever numpy was told to do about an overflow."""
-        random = np.random.default_rng(1)
-        points = (random.random((7, 2)) + 0.5) * np.ldexp(1.0, exponent)
-        points *= np.ldexp(1.0, -np.sign(exponent or 1) * random.integers(0, 900, (7, 2)))
-        exact = oracles.rationals(points.tolist())
+        random = np.random.default_rng(seed)
+        points = np.ldexp(random.random((12, 2)) - 0.5, random.integers(-900, 900, (12, 2)) * (seed % 3 != 0))
+        graph = PSLG(points, [(0, 1)])
+        expected = constrained_delaunay(graph, carve=False)
         with np.errstate(over="raise", invalid="raise"):
-            mesh = constrained_delaunay(PSLG(points, [(0, 1)]), carve=False)
-        assert canonical_triangles(mesh.triangles.tolist()) == constrained_oracle.constrained_triangles(exact, [(0, 1)])
+            mesh = constrained_delaunay(graph, carve=False)
+        assert mesh.canonical() == expected.canonical()
+        assert verify(mesh.points, mesh.triangles, segments=mesh.segments).ok

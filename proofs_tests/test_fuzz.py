@@ -32,7 +32,9 @@ def changed(target: Target, count: int) -> list[bytes]:
 
 
 @pytest.mark.obligation(
-    "P5", "seeds with one to four changes are read, and read again as the same, or refused by a typed error", method="fuzzing"
+    "P5",
+    "seeds with one to four changes are read, and read again as the same, or refused by a typed error",
+    method="fuzzing",
 )
 class TestEveryReader:
     """Seeds, and seeds with one to four changes: a right result, which is read again as the same when it is written, or

@@ -2,10 +2,11 @@
 
 import sys
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import pytest
-from proofs_tests.enumeration import grid, triangulations
+from proofs_tests.enumeration import grid, reachable_states, triangulations
 
 from exactmesh import Edge, Face, Primal, QuadEdge, QuarterEdge, Vertex
 from exactmesh.errors import TopologyError
@@ -146,6 +147,49 @@ class TestStrangers:
         assert str(raised.value) == (
             f"quarter-edge {named} (edge {named // 4}) breaks the axioms: onext = {ring[named]}"
         )
+
+
+@pytest.mark.obligation("M1", "the first quarter-edge at fault is named where some are missing", method="exhaustive")
+class TestMissingQuarters:
+    """A quarter-edge is missing where its edge was not deleted, or leads to nothing, or breaks an axiom: the first of
+    these is named, in every state of two edges of which any one quarter, or two, are taken out."""
+
+    def test_every_hole(self) -> None:
+        labels = np.zeros(4, dtype=np.int32)
+        for ring in reachable_states(2):
+            for holes in product(range(8), repeat=2):
+                broken = ring.copy()
+                broken[list(holes)] = -1
+                entries = broken.tolist()
+                first = next(q for q in range(8) if self.is_at_fault(entries, q))
+                with pytest.raises(TopologyError) as raised:
+                    QuadEdge.from_arrays(broken, labels, labels.copy())
+                assert raised.value.indices == (first,)
+
+    @staticmethod
+    def is_at_fault(entries: list[int], q: int) -> bool:
+        after = entries[q]
+        if after == -1:
+            return entries[q // 4 * 4] != -1
+        turned = entries[after // 4 * 4 + (after + 1) % 4]
+        return entries[after] == -1 or turned == -1 or turned // 4 * 4 + (turned + 1) % 4 != q
+
+
+@pytest.mark.obligation("M1", "arrays of wrong lengths are refused by their lengths", method="exhaustive")
+class TestLengths:
+    """A ring of k entries is taken just when 4 divides k and there are k / 2 vertices and faces."""
+
+    def test_every_length(self) -> None:
+        for lengths in product(range(9), repeat=3):
+            ring = np.full(lengths[0], -1, dtype=np.int32)  # of edges that were all deleted
+            vertex, face = (np.zeros(length, dtype=np.int32) for length in lengths[1:])
+            if lengths in ((0, 0, 0), (4, 2, 2), (8, 4, 4)):
+                assert len(QuadEdge.from_arrays(ring, vertex, face)) == 0
+            else:
+                with pytest.raises(TopologyError) as raised:
+                    QuadEdge.from_arrays(ring, vertex, face)
+                told = "{} ring entries need half as many origins, not {}, {}".format(*lengths)
+                assert str(raised.value) == told
 
 
 def triangular_faces(surface: QuadEdge) -> set[frozenset[int]]:

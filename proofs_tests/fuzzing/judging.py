@@ -13,7 +13,7 @@ from types import FrameType
 from exactmesh.errors import ExactMeshError
 from exactmesh.triangle import TriangleWarning
 
-__all__ = ["SECONDS", "Breach", "WrongResultError", "Target", "judged", "limited", "require"]
+__all__ = ["SECONDS", "Breach", "Target", "WrongResultError", "judged", "limited", "require"]
 
 SECONDS = 10.0  # of one input, of the processor's time
 _ROOM = 2 << 30  # bytes that one input may ask for

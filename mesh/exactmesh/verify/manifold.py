@@ -52,15 +52,13 @@ def find_broken_fans(links: Links, r_begin: int, r_end: int, broken: npt.NDArray
     slots, kinds = links.slots, links.kinds
     for v in links.order[r_begin:r_end]:
         begin, end = links.first[v], links.last[v]
-        start, starts = begin, 0
+        start = begin
         for i in range(begin, end):
             if kinds[i] == BOUNDARY:
                 start = i
-                starts += 1
             elif kinds[i] == REPEATED or kinds[i] == CROWDED:
                 broken[v] = True
-        if broken[v] or starts > 1:
-            broken[v] = True
+        if broken[v]:
             continue
         met, i = 0, start
         while i >= 0:

@@ -51,7 +51,7 @@ def match_sorted(
 
 def lexicographic_order(points: FloatArray) -> IndexArray:
     """Return the order by x, ties by y, ties by index; -0.0 is 0.0."""
-    return np.lexsort((points[:, 1] + 0.0, points[:, 0] + 0.0))
+    return np.lexsort((points[:, 1], points[:, 0]))
 
 
 def corners_at(points: FloatArray, used: npt.NDArray[np.bool_], wanted: FloatArray) -> IndexArray:
