@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from dataclasses import FrozenInstanceError
 from itertools import product
 
 import numpy as np
@@ -77,7 +78,26 @@ class TestLabels:
         assert len(surface) == len([*surface.edges()]) == most
 
     def test_the_limit_is_that_of_31_bits(self) -> None:
+        assert len(QuadEdge()) == 0
         assert 4 * sys.modules["exactmesh.quadedge"].MAX_EDGES == 2**31
+
+
+@pytest.mark.obligation("M1", "a handle is a value", method="named cases")
+class TestHandles:
+    """A handle cannot be changed, and nothing hung on it; two are equal, and one in a set, iff they mean the same edge
+    of the same quad-edge. An edge that was given no vertices has -1 at its ends."""
+
+    def test_values(self) -> None:
+        surface, other = QuadEdge(), QuadEdge()
+        one, same, two, there = surface.make_edge(), surface.edge(0), surface.make_edge(), other.make_edge()
+        assert one == same == one.sym.sym
+        assert len({one, same, two, there, one.sym}) == 4
+        assert one not in (two, there, one.sym)
+        for name in ("index", "structure"):
+            with pytest.raises(FrozenInstanceError):
+                setattr(one, name, getattr(two, name))
+        assert not hasattr(one, "__dict__")
+        assert (one.org, one.dest) == (-1, -1)
 
 
 def three_edges() -> QuadEdge:
