@@ -1,7 +1,9 @@
 """What a user meets first: the version, the names of the package, and signatures that can be read."""
 
+import importlib
 import inspect
 import re
+import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -90,3 +92,27 @@ class TestNames:
 
     def test_control_a_name_that_is_missing_is_noticed(self) -> None:
         assert not set(exactmesh.errors.__all__) <= set(exactmesh.__all__) - {"BoundError"}
+
+
+class TestVerify:
+    """Law: ``exactmesh.verify`` is the function, however the room of that name is imported, and its names are found by
+    every spelling."""
+
+    def test_import_of_the_room(self) -> None:
+        found: dict[str, object] = {}
+        exec("import exactmesh.verify\nimport exactmesh.verify as room\nfunction = exactmesh.verify", found)
+        assert found["room"] is found["function"] is exactmesh.verify
+        assert inspect.isfunction(exactmesh.verify)
+        assert exactmesh.verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]).ok
+
+    @pytest.mark.parametrize("name", sys.modules["exactmesh.verify"].__all__)
+    def test_every_name_of_the_room(self, name: str) -> None:
+        room = importlib.import_module("exactmesh.verify")
+        assert getattr(exactmesh.verify, name) is getattr(room, name)
+
+    def test_control_the_room_is_no_function(self) -> None:
+        """The module itself, which only importlib and ``from exactmesh.verify import`` see."""
+        room: object = importlib.import_module("exactmesh.verify")
+        assert not inspect.isfunction(room)
+        assert hasattr(room, "adjacency")
+        assert not hasattr(exactmesh.verify, "adjacency")

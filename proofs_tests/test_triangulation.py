@@ -401,6 +401,19 @@ class TestLocate:
         assert outside == -1
         assert misplaced(mesh, queries, [int(mesh.neighbors[here].max()), here]) == [0, 1]
 
+    def test_one_at_a_time(self) -> None:
+        """A single point takes another way than many: the start is chosen, and each predicate guarded by itself."""
+        random = np.random.default_rng(5)
+        mesh = delaunay(
+            np.concatenate([random.random((300, 2)), [(x / 4, y / 4) for x, y in grid(5, 5)], [(3e307, 0.0)]])
+        )
+        queries = [*mesh.points[::40].tolist(), (0.5, 0.5), (0.3, 0.25), (-1.0, 0.0), (1e300, 1e-300), (5e-324, 0.1)]
+        queries += (0.5 * mesh.points[mesh.edges[::90, 0]] + 0.5 * mesh.points[mesh.edges[::90, 1]]).tolist()
+        found = [int(mesh.locate([query])[0]) for query in queries]
+        assert not misplaced(mesh, [(x, y) for x, y in queries], found)
+        many = mesh.locate(queries)
+        assert [t < 0 for t in found] == (many < 0).tolist()
+
     def test_no_queries(self) -> None:
         assert MESHES["grid"].locate(np.empty((0, 2))).shape == (0,)
 
