@@ -33,7 +33,7 @@ def disagreements(given: Given) -> list[str]:
 def _of_predicates(points: FloatArray, table: Table) -> Iterator[str]:
     """Every triple and every four of the given points, in their order."""
     rank, n = table.rank, len(points)
-    triples = np.array(list(combinations(range(n), 3)))
+    triples = np.array(list(combinations(range(n), 3)), dtype=np.int64).reshape(-1, 3)
     signs = orient2d_batch(*(points[triples[:, i]] for i in range(3))).tolist()
     for (a, b, c), found in zip(triples.tolist(), signs, strict=True):
         if found != sign(table.twice[rank[a]][rank[b]][rank[c]]):
