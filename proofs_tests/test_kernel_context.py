@@ -101,5 +101,6 @@ class TestBounds:
         assert other.scratch is k.scratch
         assert other.counts is k.counts
         assert other.mailbox is k.mailbox
-        assert k.counts.shape == (2, 5)
+        assert (k.counts.shape, k.mailbox.shape) == ((2, 5), (2,))
+        assert not k.mailbox.any()
         assert not k.counts.any()
