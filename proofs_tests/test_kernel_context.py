@@ -22,7 +22,8 @@ from exactkernel.context import (
 TOP, BOTTOM = Fraction(constants.MAX_COORDINATE_DEGREE_4), Fraction(constants.MIN_UNIT_DEGREE_4)
 #: Widths of an input, from its largest magnitude to its unit, around the 521 that the window has room for.
 WIDTHS = (0, 1, 40, 519, 520, 521, 522, 900)
-FACTORS = (1.0, 1.0 + 2.0**-52, 1.5, 2.0 - 2.0**-52)
+FACTORS = (1.0, 1.0 + 2.0**-52, 2.0 - 2.0**-52)
+POWERS = {e: Fraction(2) ** e for e in range(-1300, 1350)}
 
 
 def inputs() -> list[tuple[float, float]]:
@@ -36,11 +37,12 @@ def inputs() -> list[tuple[float, float]]:
 
 
 def leading_inside(maximum: float, unit: float) -> list[int]:
-    """All exponents, by trying each."""
+    """All exponents, by trying each that brings the largest magnitude near the window."""
+    size = math.frexp(maximum)[1]
     return [
         e
-        for e in range(-1400, 1400)
-        if Fraction(unit) * Fraction(2) ** e >= BOTTOM and Fraction(maximum) * Fraction(2) ** e <= TOP
+        for e in range(-270 - size, 260 - size)
+        if Fraction(unit) * POWERS[e] >= BOTTOM and Fraction(maximum) * POWERS[e] <= TOP
     ]
 
 
@@ -101,5 +103,6 @@ class TestBounds:
         assert other.scratch is k.scratch
         assert other.counts is k.counts
         assert other.mailbox is k.mailbox
-        assert k.counts.shape == (2, 5)
+        assert (k.counts.shape, k.mailbox.shape) == ((2, 5), (2,))
+        assert not k.mailbox.any()
         assert not k.counts.any()

@@ -55,5 +55,6 @@ class TestDefinition:
             for order in list(permutations(range(4)))[::5]:
                 there = [(Fraction(x, 3), Fraction(y + 1, 3)) for x, y in (points[i] for i in order)]
                 assert ek.incircle_perturbed(*there) == sign * oracle.parity(order)
+                assert ek.incircle(*there) in (0, sign * oracle.parity(order))
                 cases += 1
         record_property("cases", cases)

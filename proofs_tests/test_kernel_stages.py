@@ -17,9 +17,15 @@ from exactkernel.constants import (
     MIN_COORDINATE_DEGREE_2,
     MIN_COORDINATE_DEGREE_4,
 )
-from exactkernel.context import make_context
+from exactkernel.context import SCRATCH_SIZE, make_context
 from exactkernel.diametral import diametral_adaptive, diametral_filter
-from exactkernel.incircle import incircle_adaptive, incircle_filter, incircle_perturbed_adaptive
+from exactkernel.incircle import (
+    incircle_adaptive,
+    incircle_expansion,
+    incircle_filter,
+    incircle_perturbed_adaptive,
+    lifted_term,
+)
 from exactkernel.orient2d import orient2d_adaptive, orient2d_filter, products_difference
 
 Filter = Callable[..., int]
@@ -106,7 +112,7 @@ class TestGridAlone:
             (incircle_adaptive, terms_of_incircle, 4, 1),
         ],
     )
-    @pytest.mark.parametrize("is_known", [True, False])
+    @pytest.mark.parametrize(("is_known", "unit"), [(True, 1.0), (False, 1.0), (True, 2.0**-9)])
     def test_signs(
         self,
         adaptive: Adaptive,
@@ -114,14 +120,15 @@ class TestGridAlone:
         n: int,
         row: int,
         is_known: bool,
+        unit: float,
         record_property: Callable[[str, object], None],
     ) -> None:
-        k = make_context(np.ones(1))._replace(orient2d_bound=1e300, incircle_bound=1e300)
+        k = make_context(np.array([unit]))._replace(orient2d_bound=1e300, incircle_bound=1e300)
         if not is_known:
             k = k._replace(grid_limit=0.0)
         cases = 0
         for points in cells(n):
-            assert adaptive(k, *np.ravel(points).astype(float).tolist()) == sign(sum(terms(points)))
+            assert adaptive(k, *(unit * np.ravel(points)).tolist()) == sign(sum(terms(points)))
             cases += 1
         assert (k.counts[row, ek.Stage.GRID] == k.counts.sum() == cases) == (is_known or n == 4)
         assert not k.counts[:, [ek.Stage.FILTER, ek.Stage.RATIONAL]].any()
@@ -278,3 +285,29 @@ class TestTally:
             assert broken[0, 0] == (calls if adaptive is incircle_perturbed_adaptive and stage else 0)
             broken[0, 0] = 0
             assert not broken.any()
+
+
+@pytest.mark.obligation("K5", "the expansions of incircle are exact, whatever the tails", method="named cases")
+class TestLiftedTerm:
+    """(a^2 + A^2) (b C - c B) of pairs of doubles, component by component summed in fractions; and the determinant."""
+
+    def test_values(self, record_property: Callable[[str, object], None]) -> None:
+        random = np.random.default_rng(7)
+        h, scratch = np.zeros(512), np.zeros(SCRATCH_SIZE)
+        term_of: Adaptive = lifted_term
+        sign_of: Adaptive = incircle_expansion
+        cases = 40
+        for _ in range(cases):
+            heads = random.integers(-9, 10, 6) * 2.0 ** random.integers(-3, 4, 6)
+            tails = random.integers(-9, 10, 6) * 2.0 ** random.integers(-90, -60, 6)
+            pairs = [float(x) for pair in zip(heads, tails, strict=True) for x in pair]
+            a, A, b, B, c, C = (Fraction(x) + Fraction(t) for x, t in zip(pairs[::2], pairs[1::2], strict=True))
+            n = term_of(*pairs, h, scratch)
+            assert sum(map(Fraction, h[:n].tolist()), Fraction(0)) == (a * a + A * A) * (b * C - c * B)
+            terms = [
+                (a * a + A * A) * (b * C - c * B),
+                (b * b + B * B) * (c * A - a * C),
+                (c * c + C * C) * (a * B - b * A),
+            ]
+            assert sign_of(*pairs, scratch) == sign(sum(terms))
+        record_property("cases", cases)
