@@ -279,7 +279,9 @@ class TestWorstPart:
         assert graded(lengths_pass(1.0), np.zeros((3, 2)), [1]) == ([ROUNDING_SIZED], [0.0])
 
 
-@pytest.mark.obligation("V1", "violations are ranked by size, what doubles leave open by fractions", method="enumeration")
+@pytest.mark.obligation(
+    "V1", "violations are ranked by size, what doubles leave open by fractions", method="enumeration"
+)
 class TestRanked:
     """Wrong ones come first, the larger before the smaller, ties by position; what is unknown is asked for, once."""
 
