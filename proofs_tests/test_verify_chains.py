@@ -1,7 +1,7 @@
 """V1 for straight chains and for the sorted neighbours that find them, each function alone, against fractions."""
 
 from collections.abc import Iterator, Sequence
-from itertools import product
+from itertools import pairwise, product
 from random import Random
 
 import numpy as np
@@ -69,7 +69,7 @@ def straight(points: Sequence[Place], triangles: Sequence[Triangle], a: int, b: 
     corners = {v for t in triangles for v in t}
     on = [v for v in corners | {a, b} if oracles.on_segment(exact[v], exact[a], exact[b])]
     on.sort(key=lambda v: oracles.squared_distance(exact[v], exact[a]))
-    steps = [*zip(on, on[1:], strict=False)]
+    steps = [*pairwise(on)]
     return steps if all(step in edges for step in steps) else None
 
 

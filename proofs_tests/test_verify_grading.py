@@ -1,4 +1,4 @@
-"""V1 for the passes that grade violations, each alone: on which side of the threshold, and in which order, in fractions."""
+"""V1 for the passes that grade violations, each alone: side of the threshold, and order, in fractions."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -271,7 +271,7 @@ class TestWorstPart:
         assert graded(grading.grade_diametral, flat, [range(3)]) == ([UNKNOWN], [0.0])
         for sign in (1, -1):
             assert graded(angles_pass(severity.plain_angle(angle_bound(30.0)), sign), flat, [1]) == ([UNKNOWN], [-1.0])
-        assert graded(lengths_pass(1e-200), flat + [[0, 0], [1, 0], [0, 1], [0, 0]], [1])[1] == [math.inf]
+        assert graded(lengths_pass(1e-200), np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), [1])[1] == [math.inf]
         assert graded(areas_pass(0.0), np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]), [1])[1] == [math.inf]
 
     def test_empty(self) -> None:
