@@ -21,7 +21,7 @@ from exactmesh.verify.bottleneck import NO_CHAIN, NO_VERTEX, Search, empty_searc
 from exactmesh.verify.chains_rational import chain_in_rationals
 from exactmesh.verify.links import Links, linked
 from exactmesh.verify.local import localized
-from exactmesh.verify.mesh import Mesh, index_quads, prepared_mesh
+from exactmesh.verify.mesh import Mesh, index_quads, index_triples, prepared_mesh
 
 Chain = tuple[int, ...]
 Pair = tuple[int, int]
@@ -102,11 +102,11 @@ class TestDistances:
     def test_scratch_space(self) -> None:
         """Nothing is noted yet, and no two columns share memory."""
         search = empty_search(5)
-        for column in search[:3]:
-            assert column.tolist() == [0] * 5
-        for i, column in enumerate(search):
+        columns: list[npt.NDArray[np.generic]] = [*search]
+        assert [column.tolist() for column in columns[:3]] == [[0] * 5] * 3
+        for i, column in enumerate(columns):
             assert column.shape == (5,)
-            assert not any(np.shares_memory(column, other) for other in search[:i])
+            assert not any(np.shares_memory(column, other) for other in columns[:i])
 
     @pytest.mark.parametrize("seed", range(12))
     def test_candidates(self, seed: int) -> None:
@@ -170,8 +170,7 @@ def meshes() -> Iterator[tuple[FloatArray, list[Triangle]]]:
 
 
 def linked_mesh(points: FloatArray, triangles: Sequence[Triangle], others: FloatArray) -> tuple[Mesh, Links]:
-    rows = np.array(triangles, dtype=np.int32).reshape(-1, 3)
-    mesh, _ = prepared_mesh(points, rows, index_quads(()), others.reshape(-1, 2))
+    mesh, _ = prepared_mesh(points, index_triples(triangles), index_quads(()), others.reshape(-1, 2))
     return mesh, linked(len(points), mesh.context, localized(mesh.coordinates, mesh.triangles, mesh.quads))
 
 
@@ -220,9 +219,6 @@ def cases(seed: int, points: FloatArray) -> tuple[FloatArray, list[Pair]]:
     moves = [0.0, 0.0, 0.125, -0.25] if seed % 2 else [0.0]
     lines = np.array([[*(points[v] + random.choice(moves)), *(points[w] + random.choice(moves))] for v, w in pairs])
     return lines, pairs
-
-
-Found = tuple[int, list[int], list[list[float]], list[int], npt.NDArray[np.intp]]
 
 
 class Run:
@@ -275,7 +271,7 @@ class TestSearch:
             if farthest >= 0:
                 assert high - error <= known.farthest <= high + error
             else:
-                assert (high, error) == (0, 0)
+                assert high == error == 0
 
     @pytest.mark.parametrize("seed", range(6))
     def test_in_rationals(self, seed: int) -> None:

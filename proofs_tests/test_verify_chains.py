@@ -95,7 +95,7 @@ class TestStraightChains:
             mesh, links = linked_mesh(points, triangles)
             near = [v for v, p in enumerate(points) if number < 4 or v == 0 or p[0] == p[1] or v > 158]
             ends = [*product([-1, *near], repeat=2)]
-            marks = np.arange(len(links.slots)).astype(np.uint8) & 7
+            marks = (np.arange(len(links.slots)) % 8).astype(np.uint8)
             expected, slots = marks.tolist(), slots_by_ends(links)
             found = chains.chained(mesh, links, np.array(ends, dtype=np.intp), marks, bits)
             paths = [straight(points, triangles, a, b) for a, b in ends]

@@ -15,17 +15,18 @@ from proofs_tests.oracles import RationalPoint
 from exactkernel.angle import AngleBound
 from exactkernel.constants import INCIRCLE_BOUND, LARGEST_WEIGHT, ORIENT2D_BOUND, SMALLEST_WEIGHT
 from exactkernel.shape import angle_bound
-from exactkernel.types import FloatArray, IntArray
+from exactkernel.types import FloatArray
 from exactmesh import delaunay
 from exactmesh.verify import Severity, grading, severity
 from exactmesh.verify.links import INNER, linked
 from exactmesh.verify.local import localized
-from exactmesh.verify.mesh import index_quads, prepared_mesh
+from exactmesh.verify.mesh import index_quads, index_triples, prepared_mesh
 from exactmesh.verify.severity import MEASURE_BOUND, RESOLVED, ROUNDING_SIZED, UNKNOWN
+from exactmesh.verify.witness import IndexArray
 
 Terms = tuple[Fraction, Fraction]
 #: Writes grades and excesses of rows of a table of points.
-Pass = Callable[[FloatArray, IntArray, npt.NDArray[np.int8], FloatArray], None]
+Pass = Callable[[FloatArray, IndexArray, npt.NDArray[np.int8], FloatArray], None]
 #: The value and the weight of a few corners, and the measure of its size, squared where that is a root.
 CASES = 60
 
@@ -34,10 +35,11 @@ def side_of(terms: Terms, bound: float) -> int:
     return RESOLVED if abs(terms[0]) > Fraction(bound) * terms[1] else ROUNDING_SIZED
 
 
-def graded(pass_: Pass, points: FloatArray, rows: Sequence[Sequence[int]]) -> tuple[list[int], list[float]]:
+def graded(pass_: Pass, points: FloatArray, rows: npt.ArrayLike) -> tuple[list[int], list[float]]:
     """What a pass writes about rows, whatever stood there."""
-    grades, excess = np.full(len(rows), 77, dtype=np.int8), np.full(len(rows), 7e77)
-    pass_(points, np.array(rows, dtype=np.int32), grades, excess)
+    table = np.array(rows, dtype=np.intp)
+    grades, excess = np.full(len(table), 77, dtype=np.int8), np.full(len(table), 7e77)
+    pass_(points, table, grades, excess)
     return grades.tolist(), excess.tolist()
 
 
@@ -87,7 +89,7 @@ TRIANGLES = np.array([(2, 2, 2), (0, 1, 2)], dtype=np.int32)
 
 
 def angles_pass(bound: AngleBound, sign: int) -> Pass:
-    def pass_(points: FloatArray, rows: IntArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
+    def pass_(points: FloatArray, rows: IndexArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
         grading.grade_angles(bound, sign, points, TRIANGLES, rows, grades, excess)
 
     return pass_
@@ -96,7 +98,7 @@ def angles_pass(bound: AngleBound, sign: int) -> Pass:
 def lengths_pass(limit: float) -> Pass:
     limits = np.array([7.0, limit])
 
-    def pass_(points: FloatArray, rows: IntArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
+    def pass_(points: FloatArray, rows: IndexArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
         grading.grade_lengths(limits, points, TRIANGLES, rows, grades, excess)
 
     return pass_
@@ -105,7 +107,7 @@ def lengths_pass(limit: float) -> Pass:
 def areas_pass(limit: float) -> Pass:
     limits = np.array([7.0, limit])
 
-    def pass_(points: FloatArray, rows: IntArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
+    def pass_(points: FloatArray, rows: IndexArray, grades: npt.NDArray[np.int8], excess: FloatArray) -> None:
         grading.grade_areas(limits, points, TRIANGLES, rows, grades, excess)
 
     return pass_
@@ -149,7 +151,7 @@ class TestPasses:
             points = tilted(random, random.sample(ring, 4))
             if random.random() < 0.2:
                 points[random.randrange(4)] += random.random()
-            (grade,), (excess,) = graded(grading.grade_circles, points, [range(4)])
+            (grade,), (excess,) = graded(grading.grade_circles, points, [[0, 1, 2, 3]])
             a, b, c, d = oracles.rationals(points.tolist())
             terms = circle_terms(a, b, c, d)
             assert grade == side_of(terms, INCIRCLE_BOUND)
@@ -163,7 +165,7 @@ class TestPasses:
         random, sides = Random(seed), list[int]()
         for _ in range(CASES):
             points = tilted(random, [(-5, 0), random.choice(((5, 0), (5, 1))), (3, 4)])
-            (grade,), (excess,) = graded(grading.grade_diametral, points, [range(3)])
+            (grade,), (excess,) = graded(grading.grade_diametral, points, [[0, 1, 2]])
             a, b, p = oracles.rationals(points.tolist())
             terms = diametral_terms(a, b, p)
             assert grade == side_of(terms, ORIENT2D_BOUND)
@@ -267,8 +269,8 @@ class TestWorstPart:
     def test_nothing_to_measure_by(self) -> None:
         """Measures that would be divided by nothing are defined all the same."""
         flat = np.zeros((4, 2))
-        assert graded(grading.grade_circles, flat, [range(4)]) == ([UNKNOWN], [0.0])
-        assert graded(grading.grade_diametral, flat, [range(3)]) == ([UNKNOWN], [0.0])
+        assert graded(grading.grade_circles, flat, [[0, 1, 2, 3]]) == ([UNKNOWN], [0.0])
+        assert graded(grading.grade_diametral, flat, [[0, 1, 2]]) == ([UNKNOWN], [0.0])
         for sign in (1, -1):
             assert graded(angles_pass(severity.plain_angle(angle_bound(30.0)), sign), flat, [1]) == ([UNKNOWN], [-1.0])
         assert graded(lengths_pass(1e-200), np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), [1])[1] == [math.inf]
@@ -323,7 +325,7 @@ class TestFarCorners:
     def test_every_edge(self) -> None:
         points = np.random.default_rng(1).random((40, 2))
         triangles = delaunay(points).triangles
-        mesh, _ = prepared_mesh(points, triangles, index_quads(()), np.empty((0, 2)))
+        mesh, _ = prepared_mesh(points, index_triples(triangles), index_quads(()), np.empty((0, 2)))
         links = linked(len(points), mesh.context, localized(mesh.coordinates, mesh.triangles, mesh.quads))
         third = {(t[i], t[i - 2]): t[i - 1] for t in triangles.tolist() for i in range(3)}
         corners, ranking = grading.rank_circles(mesh, links, np.flatnonzero(links.kinds == INNER))
