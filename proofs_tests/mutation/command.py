@@ -1,6 +1,7 @@
 """The command: which mutants, where the results go, and whether enough of them were killed."""
 
 import importlib
+import itertools
 import random
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +9,7 @@ from typing import Annotated
 import typer
 from proofs_tests.mutation.campaign import Result, campaign, read_results
 from proofs_tests.mutation.covering import Covering
-from proofs_tests.mutation.mutants import mutants_of, source_files
+from proofs_tests.mutation.mutants import Mutant, mutants_of, source_files
 from proofs_tests.mutation.survivors import Survivors, described, page
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -36,7 +37,9 @@ def _run(
     results: Annotated[Path, typer.Option(help="lines of JSON; mutants killed there are not tried again")] = Path(
         "mutants.jsonl"
     ),
-    sample: Annotated[int | None, typer.Option(help="try so many, drawn by chance")] = None,
+    sample: Annotated[
+        int | None, typer.Option(help="try so many, drawn by chance from those that are not listed")
+    ] = None,
     seed: Annotated[str, typer.Option(help="of the sample")] = "",
     only: Annotated[list[str] | None, typer.Option(help="only files whose path contains one of these")] = None,
     budget: Annotated[float, typer.Option(help="seconds of tests that a mutant is worth")] = 60.0,
@@ -46,7 +49,7 @@ def _run(
     """Mutate, test, and tell what survived; exit code 1 below 95 percent."""
     mutants = [mutant for file in source_files() if _chosen(file, only) for mutant in mutants_of(file)]
     if sample is not None:
-        mutants = random.Random(seed).sample(mutants, min(sample, len(mutants)))
+        mutants = _sampled(mutants, sample, seed)
     earlier = read_results(results)
     found = {mutant: earlier[mutant] for mutant in mutants if mutant in earlier and not earlier[mutant].alive}
     for library in _LIBRARIES:
@@ -72,6 +75,13 @@ def _run(
 
 def _chosen(file: str, parts: list[str] | None) -> bool:
     return not parts or any(part in file for part in parts)
+
+
+def _sampled(mutants: list[Mutant], count: int, seed: str) -> list[Mutant]:
+    """Draw so many mutants that are not known to be equivalent."""
+    known = Survivors.listed().reasons
+    drawn = random.Random(seed).sample(mutants, len(mutants))
+    return list(itertools.islice((mutant for mutant in drawn if described(mutant) not in known), count))
 
 
 def _tell(results: list[Result], page_file: Path | None) -> None:
