@@ -9,8 +9,8 @@ import pytest
 from proofs_tests.crossing_oracle import is_nearest
 from proofs_tests.interpreted import interpreted
 from proofs_tests.magnitudes import difference, inner
+from proofs_tests.rounding_calculus import Bounded, largest_needed
 from proofs_tests.test_kernel_bisector_stages import near_ties, numerator
-from proofs_tests.test_kernel_filter import Bounded, largest_needed
 
 from exactkernel import bisector
 from exactkernel.bisector import bisector_crossing
@@ -166,9 +166,9 @@ class TestErrors:
         """The last difference is free: that of a lift. Nothing much is given away."""
         difference_of_inputs = Bounded(U)
         square = difference_of_inputs * difference_of_inputs
-        needed = largest_needed(square + square)
+        needed = largest_needed((square + square).e)
         assert needed <= Fraction(bisector._NEARER_BOUND) <= needed + 64 * U * U
 
     def test_control_a_bound_without_the_slack_is_too_small(self) -> None:
         """The bound without its second-order part."""
-        assert Fraction(bisector._NEARER_BOUND) - 32 * U * U < largest_needed(Bounded(4 * U))
+        assert Fraction(bisector._NEARER_BOUND) - 32 * U * U < largest_needed(4 * U)

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from proofs_tests import test_kernel_filter as filters
+from proofs_tests.rounding_calculus import Bounded, U, largest_needed
 
 import exactkernel as ek
 from exactkernel import codes, constants
@@ -13,7 +13,10 @@ from exactkernel.context import chunk_size, guarded_context, make_context
 from exactkernel.expansions import split, two_product
 from exactkernel.measure import area_code
 
-U = Fraction(1, 2**53)
+#: What the calculus says of a product of two differences of inputs, and of a term of incircle, lift times minor.
+PRODUCT = Bounded(U) * Bounded(U)
+TERM = (PRODUCT + PRODUCT) * (PRODUCT + PRODUCT)
+
 SMALLEST = Fraction(1, 2**1074)
 LARGEST = Fraction(2) ** 1023
 
@@ -30,13 +33,10 @@ class TestSharpness:
 
     @pytest.mark.parametrize(
         ("bound", "last"),
-        [
-            (constants.ORIENT2D_BOUND, filters.TestConstants.product),
-            (constants.INCIRCLE_BOUND, filters.TestConstants.term + filters.TestConstants.term),
-        ],
+        [(constants.ORIENT2D_BOUND, PRODUCT), (constants.INCIRCLE_BOUND, TERM + TERM)],
     )
-    def test_filters(self, bound: float, last: filters.Bounded) -> None:
-        needed = filters.largest_needed(last)
+    def test_filters(self, bound: float, last: Bounded) -> None:
+        needed = largest_needed(last.e)
         assert needed <= Fraction(bound) < needed * (1 + Fraction(1, 10**12))
 
 
