@@ -44,6 +44,13 @@ class TestRationals:
         assert (ek.angle_below(triangle, 0), ek.angle_below(triangle, 180)) == (False, True)
         assert (ek.angle_above(triangle, 0), ek.angle_above(triangle, 180)) == (True, False)
 
+    def test_what_is_no_sequence_of_points_has_no_shape(self) -> None:
+        """The typed error names it, and says how many points there should be."""
+        with pytest.raises(ek.ShapeError, match="three corners, not 5"):
+            ek.angle_below(5, 20)  # type: ignore[arg-type]  # what an untyped caller passes
+        with pytest.raises(ek.ShapeError, match="two ends, not None"):
+            ek.length_above(None, 20)  # type: ignore[arg-type]
+
     def test_control_the_bound_as_a_double_is_wrong(self) -> None:
         """A bound of 1/18 rounded to a double."""
         triangle = [CORNERS[0], CORNERS[1], CORNERS[3]]
