@@ -16,6 +16,7 @@ from exactkernel.measure import area_code
 U = Fraction(1, 2**53)
 SMALLEST = Fraction(1, 2**1074)
 LARGEST = Fraction(2) ** 1023
+DEGREES = ["degree 2", "degree 4"]  # names that do not depend on the constants
 
 
 @pytest.mark.obligation(
@@ -34,6 +35,7 @@ class TestSharpness:
             (constants.ORIENT2D_BOUND, filters.TestConstants.product),
             (constants.INCIRCLE_BOUND, filters.TestConstants.term + filters.TestConstants.term),
         ],
+        ids=["orient2d", "incircle"],
     )
     def test_filters(self, bound: float, last: filters.Bounded) -> None:
         needed = filters.largest_needed(last)
@@ -44,7 +46,9 @@ class TestSharpness:
 class TestWindows:
     """Each end is the last power of two for which the determinant of its degree neither under- nor overflows."""
 
-    @pytest.mark.parametrize(("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)])
+    @pytest.mark.parametrize(
+        ("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)], ids=DEGREES
+    )
     def test_smallest_units(self, unit: float, degree: int) -> None:
         """A determinant consists of multiples of the unit to the degree, and the smallest double is 2^-1074."""
         assert Fraction(unit) ** degree >= SMALLEST > Fraction(unit / 2) ** degree
@@ -55,6 +59,7 @@ class TestWindows:
             (constants.MIN_COORDINATE_DEGREE_2, constants.MIN_UNIT_DEGREE_2),
             (constants.MIN_COORDINATE_DEGREE_4, constants.MIN_UNIT_DEGREE_4),
         ],
+        ids=DEGREES,
     )
     def test_smallest_coordinates(self, coordinate: float, unit: float) -> None:
         """Every double from there on is a multiple of the unit; not every smaller one is."""
@@ -64,6 +69,7 @@ class TestWindows:
     @pytest.mark.parametrize(
         ("coordinate", "degree", "terms"),
         [(constants.MAX_COORDINATE_DEGREE_2, 2, 2), (constants.MAX_COORDINATE_DEGREE_4, 4, 3 * 2 * 2)],
+        ids=DEGREES,
     )
     def test_largest_coordinates(self, coordinate: float, degree: int, terms: int) -> None:
         """So many products of differences, up to twice the coordinate, and an expansion's partial sums to twice

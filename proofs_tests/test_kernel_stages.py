@@ -158,7 +158,7 @@ WINDOWS = [
 class TestEveryCoordinateIsGuarded:
     """Whichever coordinate is one step outside: rational; no other, and not zero, ever is."""
 
-    @pytest.mark.parametrize(("staged", "n", "smallest", "largest"), WINDOWS)
+    @pytest.mark.parametrize(("staged", "n", "smallest", "largest"), WINDOWS, ids=["orient2d", "diametral", "incircle"])
     def test_each(
         self, staged: Callable[..., tuple[ek.Sign, ek.Stage]], n: int, smallest: float, largest: float
     ) -> None:
