@@ -12,6 +12,7 @@ from exactkernel import codes, constants
 from exactkernel.context import chunk_size, guarded_context, make_context
 from exactkernel.expansions import split, two_product
 from exactkernel.measure import area_code
+from exactkernel.orient2d import products_difference
 
 U = Fraction(1, 2**53)
 SMALLEST = Fraction(1, 2**1074)
@@ -99,6 +100,45 @@ class TestWindows:
         area = 0.5 * (1.0 - ulps * constants.UNIT_ROUNDOFF)
         code = area_code(guarded_context(), area, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
         assert codes.DECODED[code] == (ek.Sign.POSITIVE, stage)
+
+
+@pytest.mark.obligation(
+    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
+)
+class TestDoubleDoubleBorder:
+    """At the border itself the expansions answer, one step beyond it the double-doubles."""
+
+    @pytest.mark.parametrize("s", [1.0, -1.0])
+    def test_products(self, s: float) -> None:
+        """1 * 1 - 1 * (1 - t) = t, and the permanent is 2; by turns in each of the four factors."""
+        border = float(64 * U**2 * 2)
+        scratch = np.empty(48)
+        for i in range(4):
+            for size, stage in [
+                (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
+                (border, ek.Stage.EXPANSION),
+                (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
+            ]:
+                tails = [0.0] * 4
+                tails[i] = s * size
+                answer = s if i < 2 else -s
+                assert (
+                    products_difference(1.0, tails[0], 1.0, tails[1], 1.0, tails[2], 1.0, tails[3], scratch)
+                    == int(stage) * 4 + answer + 1
+                )
+
+    @pytest.mark.parametrize("s", [1.0, -1.0])
+    @pytest.mark.parametrize("axis", [0, 1])
+    def test_incircle(self, s: float, axis: int) -> None:
+        """A corner of the unit square moves by t along an edge: the determinant is t - t^2, the permanent 4."""
+        border = float(64 * U**2 * 4)
+        for size, stage in [
+            (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
+            (border, ek.Stage.EXPANSION),
+            (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
+        ]:
+            corner = (s * size, 0.0) if axis == 0 else (0.0, s * size)
+            assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
 
 
 HARD = [1.0 + 2.0**-52, 2.0 - 2.0**-52, 1.0 + 2.0**-26, 1.0 + 2.0**-27, 1.0 + 2.0**-25 + 2.0**-52, 4.0 / 3.0]
