@@ -12,6 +12,7 @@ from exactkernel import codes, constants
 from exactkernel.context import chunk_size, guarded_context, make_context
 from exactkernel.expansions import split, two_product
 from exactkernel.measure import area_code
+from exactkernel.orient2d import products_difference
 
 #: What the calculus says of a product of two differences of inputs, and of a term of incircle, lift times minor.
 PRODUCT = Bounded(U) * Bounded(U)
@@ -19,6 +20,7 @@ TERM = (PRODUCT + PRODUCT) * (PRODUCT + PRODUCT)
 
 SMALLEST = Fraction(1, 2**1074)
 LARGEST = Fraction(2) ** 1023
+DEGREES = ["degree 2", "degree 4"]  # names that do not depend on the constants
 
 
 @pytest.mark.obligation(
@@ -34,6 +36,7 @@ class TestSharpness:
     @pytest.mark.parametrize(
         ("bound", "last"),
         [(constants.ORIENT2D_BOUND, PRODUCT), (constants.INCIRCLE_BOUND, TERM + TERM)],
+        ids=["orient2d", "incircle"],
     )
     def test_filters(self, bound: float, last: Bounded) -> None:
         needed = largest_needed(last.e)
@@ -44,7 +47,9 @@ class TestSharpness:
 class TestWindows:
     """Each end is the last power of two for which the determinant of its degree neither under- nor overflows."""
 
-    @pytest.mark.parametrize(("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)])
+    @pytest.mark.parametrize(
+        ("unit", "degree"), [(constants.MIN_UNIT_DEGREE_2, 2), (constants.MIN_UNIT_DEGREE_4, 4)], ids=DEGREES
+    )
     def test_smallest_units(self, unit: float, degree: int) -> None:
         """A determinant consists of multiples of the unit to the degree, and the smallest double is 2^-1074."""
         assert Fraction(unit) ** degree >= SMALLEST > Fraction(unit / 2) ** degree
@@ -55,6 +60,7 @@ class TestWindows:
             (constants.MIN_COORDINATE_DEGREE_2, constants.MIN_UNIT_DEGREE_2),
             (constants.MIN_COORDINATE_DEGREE_4, constants.MIN_UNIT_DEGREE_4),
         ],
+        ids=DEGREES,
     )
     def test_smallest_coordinates(self, coordinate: float, unit: float) -> None:
         """Every double from there on is a multiple of the unit; not every smaller one is."""
@@ -64,6 +70,7 @@ class TestWindows:
     @pytest.mark.parametrize(
         ("coordinate", "degree", "terms"),
         [(constants.MAX_COORDINATE_DEGREE_2, 2, 2), (constants.MAX_COORDINATE_DEGREE_4, 4, 3 * 2 * 2)],
+        ids=DEGREES,
     )
     def test_largest_coordinates(self, coordinate: float, degree: int, terms: int) -> None:
         """So many products of differences, up to twice the coordinate, and an expansion's partial sums to twice
@@ -93,6 +100,45 @@ class TestWindows:
         area = 0.5 * (1.0 - ulps * constants.UNIT_ROUNDOFF)
         code = area_code(guarded_context(), area, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
         assert codes.DECODED[code] == (ek.Sign.POSITIVE, stage)
+
+
+@pytest.mark.obligation(
+    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
+)
+class TestDoubleDoubleBorder:
+    """At the border itself the expansions answer, one step beyond it the double-doubles."""
+
+    @pytest.mark.parametrize("s", [1.0, -1.0])
+    def test_products(self, s: float) -> None:
+        """1 * 1 - 1 * (1 - t) = t, and the permanent is 2; by turns in each of the four factors."""
+        border = float(64 * U**2 * 2)
+        scratch = np.empty(48)
+        for i in range(4):
+            for size, stage in [
+                (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
+                (border, ek.Stage.EXPANSION),
+                (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
+            ]:
+                tails = [0.0] * 4
+                tails[i] = s * size
+                answer = s if i < 2 else -s
+                assert (
+                    products_difference(1.0, tails[0], 1.0, tails[1], 1.0, tails[2], 1.0, tails[3], scratch)
+                    == int(stage) * 4 + answer + 1
+                )
+
+    @pytest.mark.parametrize("s", [1.0, -1.0])
+    @pytest.mark.parametrize("axis", [0, 1])
+    def test_incircle(self, s: float, axis: int) -> None:
+        """A corner of the unit square moves by t along an edge: the determinant is t - t^2, the permanent 4."""
+        border = float(64 * U**2 * 4)
+        for size, stage in [
+            (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
+            (border, ek.Stage.EXPANSION),
+            (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
+        ]:
+            corner = (s * size, 0.0) if axis == 0 else (0.0, s * size)
+            assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
 
 
 HARD = [1.0 + 2.0**-52, 2.0 - 2.0**-52, 1.0 + 2.0**-26, 1.0 + 2.0**-27, 1.0 + 2.0**-25 + 2.0**-52, 4.0 / 3.0]

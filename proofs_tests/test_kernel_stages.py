@@ -26,11 +26,10 @@ from exactkernel.incircle import (
     incircle_perturbed_adaptive,
     lifted_term,
 )
-from exactkernel.orient2d import orient2d_adaptive, orient2d_filter, products_difference
+from exactkernel.orient2d import orient2d_adaptive, orient2d_filter
 
 Filter = Callable[..., int]
 Adaptive = Callable[..., int]
-U2 = Fraction(1, 2**106)
 
 
 def sign(x: Fraction | float) -> int:
@@ -158,7 +157,7 @@ WINDOWS = [
 class TestEveryCoordinateIsGuarded:
     """Whichever coordinate is one step outside: rational; no other, and not zero, ever is."""
 
-    @pytest.mark.parametrize(("staged", "n", "smallest", "largest"), WINDOWS)
+    @pytest.mark.parametrize(("staged", "n", "smallest", "largest"), WINDOWS, ids=["orient2d", "diametral", "incircle"])
     def test_each(
         self, staged: Callable[..., tuple[ek.Sign, ek.Stage]], n: int, smallest: float, largest: float
     ) -> None:
@@ -212,45 +211,6 @@ class TestGridOfFour:
         rows = [(Fraction(x) - Fraction(dx), Fraction(y) - Fraction(dy)) for x, y in points[:3]]
         lifted = [(x, y, x * x + y * y) for x, y in rows]
         return [oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))]
-
-
-@pytest.mark.obligation(
-    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
-)
-class TestDoubleDoubleBorder:
-    """At the border itself the expansions answer, one step beyond it the double-doubles."""
-
-    @pytest.mark.parametrize("s", [1.0, -1.0])
-    def test_products(self, s: float) -> None:
-        """1 * 1 - 1 * (1 - t) = t, and the permanent is 2; by turns in each of the four factors."""
-        border = float(64 * U2 * 2)
-        scratch = np.empty(48)
-        for i in range(4):
-            for size, stage in [
-                (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
-                (border, ek.Stage.EXPANSION),
-                (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
-            ]:
-                tails = [0.0] * 4
-                tails[i] = s * size
-                answer = s if i < 2 else -s
-                assert (
-                    products_difference(1.0, tails[0], 1.0, tails[1], 1.0, tails[2], 1.0, tails[3], scratch)
-                    == int(stage) * 4 + answer + 1
-                )
-
-    @pytest.mark.parametrize("s", [1.0, -1.0])
-    @pytest.mark.parametrize("axis", [0, 1])
-    def test_incircle(self, s: float, axis: int) -> None:
-        """A corner of the unit square moves by t along an edge: the determinant is t - t^2, the permanent 4."""
-        border = float(64 * U2 * 4)
-        for size, stage in [
-            (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
-            (border, ek.Stage.EXPANSION),
-            (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
-        ]:
-            corner = (s * size, 0.0) if axis == 0 else (0.0, s * size)
-            assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
 
 
 @pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
