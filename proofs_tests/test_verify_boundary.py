@@ -181,6 +181,16 @@ class TestPositions:
                         there = [[i for i, q in enumerate(points) if used[i] and q == p] for p in wanted]
                         assert found.tolist() == [min(those, default=-1) for those in there]
 
+    def test_one_to_one(self) -> None:
+        """Different wanted positions get the first used point there; of the points themselves each gets itself."""
+        for n in range(4):
+            for points in product(self.PLACES[:3], repeat=n):
+                array, everyone = np.array(points).reshape(-1, 2), np.ones(n, dtype=np.bool_)
+                assert corners_at(array, everyone, array).tolist() == list(range(n))
+                for wanted in permutations(self.PLACES[:3]):
+                    found = corners_at(array, everyone, np.array(wanted)).tolist()
+                    assert found == [points.index(p) if p in points else -1 for p in wanted]
+
     def test_longer_lists(self) -> None:
         random = np.random.default_rng(0)
         for _ in range(200):

@@ -204,7 +204,7 @@ class TestBuckets:
             ends = np.sort(random.integers(0, spread, n))
             if n < 64:
                 ends = random.permutation(ends)
-            for b in {*range(min(spread, 45)), *ends.tolist()}:
+            for b in {*range(min(spread, 45)), *ends.tolist(), spread + 5}:
                 around = np.full(before, b), np.full(9, b)
                 slots = (np.concatenate([around[0], ends, around[1]]).astype(np.int64) << 32) | 5
                 expected = next((before + i for i in range(n) if ends[i] == b), -1)
@@ -265,6 +265,11 @@ class TestAdjacency:
                 assert count == len(expected)
                 named = [{t for t in range(len(cells)) if part[t] == name} for name in range(count)]
                 assert named == sorted(expected, key=min)
+
+    @pytest.mark.parametrize("m", [0, 1, 2, 3])
+    def test_none_across(self, m: int) -> None:
+        part, count = parts_of(np.full((m, 3), -1, dtype=np.int32))
+        assert (part.tolist(), count) == (list(range(m)), m)
 
     @pytest.mark.parametrize("size", [1, 2, 1 << 18])
     def test_with_quads(self, size: int, monkeypatch: pytest.MonkeyPatch) -> None:
