@@ -83,11 +83,33 @@ class TestDistances:
             )
             n = bottleneck.cross_expansion(points, line, v, h, scratch)
             assert sum(map(Fraction, h[:n].tolist())) == crosses[v]
-        for v, w in product(range(len(points)), repeat=2):
+        some = Random(seed).sample(range(len(points)), 14)
+        for v, w in product(some, repeat=2):
             order = (crosses[v] > crosses[w]) - (crosses[v] < crosses[w])
             assert bottleneck.compare(k, points, line, search, v, w) == order
             ahead = along(exact[w], a, b) > along(exact[v], a, b)
             assert bottleneck.is_ahead(k, line, *points[v], *points[w]) == ahead
+
+    @pytest.mark.parametrize("seed", range(4))
+    def test_near_the_perpendicular(self, seed: int) -> None:
+        """Turned right angles, rounded, and three units in the last place to both sides."""
+        random, signs = Random(seed), set[bool]()
+        for _ in range(40):
+            c, s = random.random(), random.random()
+            line = np.array([random.random(), 0.0, random.random() + c, s])
+            v = (random.random(), random.random() * 2.0**-30)
+            w = [v[0] - s, v[1] + (line[2] - line[0])]
+            w[1] += random.randrange(-3, 4) * np.spacing(w[1])
+            points = np.array([v, w, line[:2], line[2:]])
+            p, q, a, b = oracles.rationals(points.tolist())
+            ahead = along(q, a, b) > along(p, a, b)
+            assert bottleneck.is_ahead(make_context(points), line, *v, *w) == ahead
+            signs.add(ahead)
+        assert signs == {True, False}
+
+    def test_no_vertex(self) -> None:
+        """What stands for no vertex is none, and told apart."""
+        assert NO_CHAIN < NO_VERTEX < 0
 
     def test_noted_once(self) -> None:
         points, line = hard_points(0)
@@ -121,7 +143,8 @@ class TestDistances:
             *(search.high + search.error)[:4],
             *((search.high - search.error) * (1 - 2.0**-40))[:4],
         ]
-        for v, w in product(range(0, len(points), 3), range(len(points))):
+        some = Random(seed).sample(range(len(points)), 14)
+        for v, w in product(some[:5], some):
             for limit in limits:
                 found = bottleneck.is_candidate(k, points, line, search, 1, limit, v, w)
                 between = places[v] < places[w] and 0 < places[w] < along(b, a, b)
@@ -268,6 +291,7 @@ class TestSearch:
                 assert farthest >= 0
                 assert known.crosses[farthest] == known.farthest
             high, error = map(Fraction, run.crosses[i])
+            assert error >= high / 2**53, "no rounded product is known better"
             if farthest >= 0:
                 assert high - error <= known.farthest <= high + error
             else:

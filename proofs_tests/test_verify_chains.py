@@ -1,7 +1,7 @@
 """V1 for straight chains and for the sorted neighbours that find them, each function alone, against fractions."""
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, product
+from itertools import pairwise, permutations, product
 from random import Random
 
 import numpy as np
@@ -26,12 +26,16 @@ def linked_mesh(points: Sequence[Place], triangles: Sequence[Triangle]) -> tuple
 
 
 def holed_grid(seed: int) -> tuple[list[Place], list[Triangle]]:
-    """Points of a grid, shuffled, triangulated but for a few triangles; the first triangle is at point 0."""
+    """Points of a grid, shuffled but for one in the middle, triangulated but for a few triangles; and a few in the
+    middle of edges that are no corners."""
     random = Random(seed)
     points = [(float(x), float(y)) for x in range(5) for y in range(4) if random.random() < 0.8]
     random.shuffle(points)
+    points.sort(key=lambda p: abs(p[0] - 2) + abs(p[1] - 1) > 0)
     triangles = [(int(a), int(b), int(c)) for a, b, c in delaunay(points).triangles]
-    return points, [t for t in triangles if random.random() < 0.8]
+    triangles = [t for t in triangles if random.random() < 0.8]
+    middles = [[(points[v][i] + points[w][i]) / 2 for i in range(2)] for v, w, _ in triangles[:2]]
+    return points + [(x, y) for x, y in middles], triangles
 
 
 def fan(n: int) -> tuple[list[Place], list[Triangle]]:
@@ -114,6 +118,16 @@ class TestStraightChains:
             for v, w in product(range(min(len(points), 40)), repeat=2):
                 low, high = sorted((v, w))
                 assert chains.edge_slot(links, v, w) == slots.get((low, high), slots.get((high, low), -1))
+
+    def test_an_edge_is_a_chain(self) -> None:
+        """Whatever else lies on it: triangles over each other, with corners in the middle of edges."""
+        points = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)]
+        for order in permutations([(0, 1, 2), (0, 3, 4), (3, 5, 4)]):
+            mesh, links = linked_mesh(points, order)
+            for v, w in edges_of(order):
+                marks = np.zeros(len(links.slots), dtype=np.uint8)
+                assert chains.chained(mesh, links, np.array([(v, w)], dtype=np.intp), marks, ODD).all()
+                assert np.flatnonzero(marks).tolist() == [chains.edge_slot(links, v, w)]
 
     def test_no_segments(self) -> None:
         mesh, links = linked_mesh(*holed_grid(0))

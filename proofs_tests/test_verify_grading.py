@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 from random import Random
@@ -28,7 +29,8 @@ Terms = tuple[Fraction, Fraction]
 #: Writes grades and excesses of rows of a table of points.
 Pass = Callable[[FloatArray, IndexArray, npt.NDArray[np.int8], FloatArray], None]
 #: The value and the weight of a few corners, and the measure of its size, squared where that is a root.
-CASES = 60
+CASES = 100
+SMALL = (1.0, 2.0**-20)
 
 
 def side_of(terms: Terms, bound: float) -> int:
@@ -39,7 +41,8 @@ def graded(pass_: Pass, points: FloatArray, rows: npt.ArrayLike) -> tuple[list[i
     """What a pass writes about rows, whatever stood there."""
     table = np.array(rows, dtype=np.intp)
     grades, excess = np.full(len(table), 77, dtype=np.int8), np.full(len(table), 7e77)
-    pass_(points, table, grades, excess)
+    with np.errstate(divide="raise", invalid="raise"):
+        pass_(points, table, grades, excess)
     return grades.tolist(), excess.tolist()
 
 
@@ -148,7 +151,7 @@ class TestPasses:
         random, sides = Random(seed), list[int]()
         ring = [(5, 0), (3, 4), (-3, 4), (4, -3), (0, -5), (-4, 3), (-5, 0), (0, 5)]
         for _ in range(CASES):
-            points = tilted(random, random.sample(ring, 4))
+            points = tilted(random, random.sample(ring, 4)) * SMALL[seed % 2]
             if random.random() < 0.2:
                 points[random.randrange(4)] += random.random()
             (grade,), (excess,) = graded(grading.grade_circles, points, [[0, 1, 2, 3]])
@@ -179,8 +182,10 @@ class TestPasses:
     def test_areas(self, seed: int) -> None:
         random, sides = Random(seed), list[int]()
         for _ in range(CASES):
-            points = tilted(random, [(0, 0), (4, 1), (1, 4)])
-            limit = random.choice((7.5, 7.4, 1.0)) * (1 + random.randrange(-9, 9) * 2.0**-52)
+            points = tilted(random, [(0, 0), (4, 1), (1, 4)]) * SMALL[seed % 2]
+            limit = (
+                7.5 * random.choice((1, 1, 1, 0.9)) * (1 - random.randrange(0, 40) * 2.0**-52) * SMALL[seed % 2] ** 2
+            )
             (grade,), (excess,) = graded(areas_pass(limit), points, [1])
             a, b, c = oracles.rationals(points.tolist())
             products = (b[0] - a[0]) * (c[1] - a[1]), (b[1] - a[1]) * (c[0] - a[0])
@@ -216,7 +221,7 @@ class TestPasses:
         bound = severity.plain_angle(angle_bound(degrees))
         shapes = [[(0, 0), (2, 0), (0, 2)], [(0, 0), (3, 0), (-1, 1)], [(0, 0), (7, 1), (1, 8)]]
         for i in range(2 * CASES):
-            points = turned(random, tilted(random, shapes[i % 3]))
+            points = turned(random, tilted(random, shapes[i % 3])) * SMALL[i % 2]
             exact, sign = oracles.rationals(points.tolist()), 1 if least else -1
             if oracles.orient(exact[0], exact[1], exact[2]) < 0:
                 points, exact = points[::-1].copy(), exact[::-1]
@@ -302,6 +307,41 @@ class TestRanked:
                 assert found.rounding == sum(small)
                 assert found.order.tolist() == sorted(range(6), key=lambda i: (small[i], -excess[i], i))
 
+    def test_by_size(self) -> None:
+        """Triangles that are all wrong, ranked by how much; in coordinates that nothing is proven for, by position."""
+        rng = np.random.default_rng(4)
+        points = rng.random((60, 2))
+        rows = np.arange(60, dtype=np.int32).reshape(-1, 3)
+        exact = oracles.rationals(points.tolist())
+        turn = np.array([oracles.orient(*(exact[v] for v in t)) < 0 for t in rows.tolist()])
+        rows[turn] = rows[turn][:, ::-1]
+        mesh, _ = prepared_mesh(points, index_triples(rows), index_quads(()), np.empty((0, 2)))
+        beyond = replace(mesh, context=mesh.context._replace(orient2d_bound=math.inf, incircle_bound=math.inf))
+        every, limits, sizes = np.arange(20), np.full(20, 1e-9), list[list[float]]()
+        for t in rows.tolist():
+            sides = [math.dist(points[t[i]], points[t[i - 1]]) for i in range(3)]
+            area = float(abs(oracles.orient(*(exact[v] for v in t))))
+            a, b, c = sorted(sides)
+            angles = [math.acos((x * x + y * y - z * z) / (2 * x * y)) for x, y, z in ((b, c, a), (a, b, c))]
+            sizes.append([area, max(sides), -angles[0], angles[1]])
+        least, most = angle_bound(179.0), angle_bound(0.001)
+        for m in (mesh, beyond):
+            k, corners = m.context, rows.astype(np.intp)
+            rankings = [
+                grading.rank_areas(points, k, rows, every, limits),
+                grading.rank_lengths(points, k, rows, every, limits),
+                grading.rank_angles(m, rows, every, least, least=True),
+                grading.rank_angles(m, rows, every, most, least=False),
+            ]
+            for i, ranking in enumerate(rankings):
+                assert ranking.rounding == 0
+                by_size = sorted(range(20), key=lambda t, i=i: -sizes[t][i])  # type: ignore[misc]  # a default
+                assert ranking.order.tolist() == (by_size if m is mesh else [*range(20)])
+            cosines = [-(points[a] - points[c]) @ (points[b] - points[c]) for a, b, c in corners]
+            lengths = [math.dist(points[a], points[c]) * math.dist(points[b], points[c]) for a, b, c in corners]
+            by_cosine = sorted(range(20), key=lambda t: -abs(cosines[t] / lengths[t]))
+            assert grading.rank_diametral(m, corners).order.tolist() == (by_cosine if m is mesh else [*range(20)])
+
     def test_equality_is_rounding(self) -> None:
         for sign in (1, -1):
             assert severity.severity_of((Fraction(sign, 2), Fraction(1)), 0.5) is Severity.ROUNDING
@@ -328,8 +368,14 @@ class TestFarCorners:
         mesh, _ = prepared_mesh(points, index_triples(triangles), index_quads(()), np.empty((0, 2)))
         links = linked(len(points), mesh.context, localized(mesh.coordinates, mesh.triangles, mesh.quads))
         third = {(t[i], t[i - 2]): t[i - 1] for t in triangles.tolist() for i in range(3)}
-        corners, ranking = grading.rank_circles(mesh, links, np.flatnonzero(links.kinds == INNER))
+        inner = np.flatnonzero(links.kinds == INNER)
+        corners, ranking = grading.rank_circles(mesh, links, inner)
         assert ranking.rounding == 0
+        terms = [circle_terms(*oracles.rationals(points[row].tolist())) for row in corners]
+        sizes = [abs(value) / permanent for value, permanent in terms]
+        assert ranking.order.tolist() == sorted(range(len(inner)), key=lambda i: -sizes[i])[:100]
+        beyond = replace(mesh, context=mesh.context._replace(incircle_bound=math.inf))
+        assert grading.rank_circles(beyond, links, inner)[1].order.tolist() == [*range(len(inner))][:100]
         assert sorted(map(tuple, corners.tolist())) == sorted(
             (v, b, c, third[b, v]) for (v, b), c in third.items() if (b, v) in third
         )
