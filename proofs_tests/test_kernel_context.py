@@ -79,7 +79,12 @@ class TestExponents:
         assert make_context(zeros).grid_limit >= 1.0
 
 
-@pytest.mark.obligation("K6", "a context knows the bounds and the grid of its input, a guarded one nothing")
+@pytest.mark.obligation(
+    "K6",
+    "a context knows the bounds and the grid of its input, a guarded one nothing",
+    method="named cases",
+    control_in="proofs_tests/test_kernel_windows.py::TestContext",
+)
 class TestBounds:
     """The limit of the grid stage is 4096 units; another's scratch, tally and mailbox are shared, not its bounds."""
 

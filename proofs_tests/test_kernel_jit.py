@@ -104,7 +104,12 @@ class TestCacheFolder:
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no user ids on this platform")
-@pytest.mark.obligation("J1", "machine code is taken from one's own folders only, and thrown away when 30 days unused")
+@pytest.mark.obligation(
+    "J1",
+    "machine code is taken from one's own folders only, and thrown away when 30 days unused",
+    method="named cases",
+    control_in="TestCacheFolder",
+)
 class TestCacheRules:
     """Who is trusted, what is kept, and where the folders are."""
 
@@ -171,7 +176,12 @@ def _increment(x: float) -> float:
     return x + 1.0
 
 
-@pytest.mark.obligation("J1", "compiled without fast-math and without heap; interpreted where numba is told so")
+@pytest.mark.obligation(
+    "J1",
+    "compiled without fast-math and without heap; interpreted where numba is told so",
+    method="named cases",
+    control_in="TestBothLanes",
+)
 class TestSettings:
     """What numba is asked for, and in which folder."""
 

@@ -92,7 +92,12 @@ def source(function: Callable[..., int]) -> Callable[..., int]:
     return plain
 
 
-@pytest.mark.obligation("J1", "each question to the rational stage has its own number, and only its answer counts")
+@pytest.mark.obligation(
+    "J1",
+    "each question to the rational stage has its own number, and only its answer counts",
+    method="named cases",
+    control_in="proofs_tests/test_kernel_compiled.py::TestInterrupts",
+)
 class TestQuestions:
     """The sign is what the answer says that bears the question's number; sixteen attempts are made, each with a new
     number, and told apart; an answer that fails for good, or none, is an error and no sign."""
