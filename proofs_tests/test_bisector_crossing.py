@@ -77,6 +77,7 @@ class TestNearest:
         assert bisector_crossing(make_context(np.array(flat)), *flat)[2] is True
 
     def test_control_a_neighbour_is_refused(self) -> None:
+        """The double beside the nearest one."""
         points = generic(random.Random(3))
         x, _, is_certain = asked(points)
         assert is_certain
@@ -161,4 +162,5 @@ class TestErrors:
         assert needed <= Fraction(bisector._NEARER_BOUND) <= needed + 64 * U * U
 
     def test_control_a_bound_without_the_slack_is_too_small(self) -> None:
+        """The bound without its slack."""
         assert Fraction(bisector._NEARER_BOUND) - 32 * U * U < largest_needed(Bounded(4 * U))

@@ -134,6 +134,7 @@ class TestParts:
         assert math.isnan(angle_bound(math.nextafter(1e-100, 0.0)).sine)
 
     def test_control_a_sine_without_its_tail_errs_by_more(self) -> None:
+        """A sine without its tail."""
         degrees, (a, b, c) = 20.0, ((0.0, 0.0), (1.0, 0.0), (2.0, 1.0))
         headless = angle_bound(degrees)._replace(sine_tail=0.0)
         pairs = [x for p in (b, c) for i in range(2) for x in two_diff(p[i], a[i])]
@@ -240,6 +241,7 @@ class TestStages:
             assert corner_code(k, right, 0.0, 0.0, 2.0**500, 2.0**500, x, -y) == code_of(decided, 1)
 
     def test_control_another_bound_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A factor of two in the place of the one that the filter uses."""
         monkeypatch.setattr(angle, "SHAPE_FACTOR", 2.0)
         with pytest.raises(AssertionError):
             self.test_borders(0.0, monkeypatch)
@@ -283,6 +285,7 @@ class TestCorners:
                 assert asked == ["ABCDEF", "CDEFAB", "EFABCD"][: last + 1]
 
     def test_control_the_corners_are_told_apart(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The answers of two corners exchanged."""
         codes = (code_of(Stage.GRID, 0), code_of(Stage.RATIONAL, 0), code_of(Stage.GRID, 1))
         assert self.answers(monkeypatch, codes, 1) != self.answers(monkeypatch, codes[::-1], 1)
 
@@ -308,6 +311,7 @@ class TestWindow:
         assert corner_code(k, angle_bound(1e-200), *right) == code_of(Stage.RATIONAL, -1)
 
     def test_control_an_open_context_lies_outside(self) -> None:
+        """A context that trusts coordinates outside of its window."""
         thin = (0.0, 0.0, 2.0**-600, 0.0, 2.0**-600, 2.0**-600)
         bound = angle_bound(90.0)
         assert corner_code(make_context(np.ones(1)), bound, *thin) & 3 == 1
@@ -326,6 +330,7 @@ class TestWorkspaces:
             assert corner_expansion(angle_bound(degrees), *[0.1, 1e-20, 0.3, -1e-20] * 2, scratch) == 1
 
     def test_control_too_short_a_workspace_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A workspace that is too short."""
         watched_expansions(monkeypatch, angle)
         with pytest.raises(AssertionError):
             corner_expansion(angle_bound(45.0), *[0.1, 1e-20, 0.3, -1e-20] * 2, Workspace.of(95))

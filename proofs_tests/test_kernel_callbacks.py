@@ -48,6 +48,7 @@ class TestArity:
         assert all(handed == taken for handed, taken in found.values())
 
     def test_control_a_callback_left_out_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A callback left out."""
         monkeypatch.setattr(rational, "_another", None, raising=False)
         assert arities("_another") == {}
 
@@ -69,6 +70,7 @@ class TestAttempts:
 
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_control_answered_at_the_second_try(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """An answer that comes at the second attempt."""
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
         original = getattr(bisector_rational, f"_ask_{name}")
 

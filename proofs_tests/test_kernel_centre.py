@@ -80,6 +80,7 @@ class TestQuotient:
             assert Fraction(error) <= Fraction(5, 4) * first_order
 
     def test_control_a_lost_tail_is_noticed(self) -> None:
+        """A tail that is lost."""
         x, tail, error = quotient_offset(1.0, 1.0, 0.0, 0.0, 3.0, 0.0, 0.0)
         assert abs(Fraction(4, 3) - Fraction(x) - Fraction(tail)) <= Fraction(error)
         assert abs(Fraction(4, 3) - Fraction(x) + Fraction(tail)) > Fraction(error)
@@ -155,6 +156,7 @@ class TestPairs:
             assert circumcentre_in_pairs(open_context(), *outside)[2] < math.inf
 
     def test_control_the_heads_alone_are_outside(self) -> None:
+        """The heads without their tails."""
         points = generic(random.Random(2))
         x, _, error, *_ = circumcentre_in_pairs(open_context(), *flat(points))
         assert abs(Fraction(x) - exact_centre(points)[0]) > Fraction(error)
@@ -191,6 +193,7 @@ class TestBeyond:
             assert centre._beyond(axis, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, scratch) == (0, 0.0)
 
     def test_control_the_other_axis_differs(self) -> None:
+        """The coordinate of the other axis."""
         points = generic(random.Random(4))
         exact = exact_centre(points)
         _, found = centre._beyond(0, 0.0, 0.0, *flat(points), np.empty(SCRATCH_SIZE))
@@ -232,6 +235,7 @@ class TestNearest:
         assert nearest_circumcentre(open_context(), 0.0, 0.0, 1.0, 0.0, 2.0, 0.0) == (0.0, 0.0, False)
 
     def test_control_the_odd_neighbour_of_a_tie_is_refused(self) -> None:
+        """The odd neighbour of a tie."""
         tie = 1 + Fraction(1, 2**53)
         assert is_nearest(1.0, tie)
         assert not is_nearest(1.0 + 2.0**-52, tie)
@@ -368,5 +372,6 @@ class TestLeftOpen:
                 assert found == (7.0 if open_[0] else x, 8.0 if (1, y) in wanted else y, certain)
 
     def test_control_a_scripted_answer_is_heeded(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """An answer of the other sign."""
         up = self.decided(monkeypatch, 1.0, 0.0, (1, 2.0**-53), (1, 0.0))
         assert up != self.decided(monkeypatch, 1.0, 0.0, (1, 2.0**-53), (-1, 0.0))

@@ -226,7 +226,7 @@ class TestInterrupts:
         """A signal raises at the very entry of the callback, outside of its try: ctypes reports it and goes on."""
         arrived = []
 
-        def interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
+        def interrupt(number: int, frame: FrameType | None) -> NoReturn:
             arrived.append(number)
             raise KeyboardInterrupt
 

@@ -123,6 +123,7 @@ class TestParts:
             assert crossing._zero_if_possible(x, tail, error) == wanted
 
     def test_control_a_lost_tail_is_noticed(self) -> None:
+        """A tail that is lost."""
         high, low, error = dd_cross(1 / 3, 0.0, 1 / 7, 0.0, 0.0, 0.0, 0.0, 0.0)
         exact = Fraction(1 / 3) * Fraction(1 / 7)
         assert abs(Fraction(high) + Fraction(low) - exact) <= Fraction(error) < abs(Fraction(high) - exact)
@@ -162,6 +163,7 @@ class TestNearestCertain:
         assert not is_nearest_certain(0.5, -0.5, 0.0)
 
     def test_control_a_margin_of_nothing_lies(self) -> None:
+        """No margin."""
         tail = 2.0**-53 * (1 - 2.0**-53)
         assert 1.0 + (tail + 2.0**-54 * 2.0**-53) == 1.0  # rounded twice
         assert not is_nearest_certain(1.0, tail, 2.0**-54 * 2.0**-52)
@@ -215,6 +217,7 @@ class TestExact:
         assert crossing_in_pairs(k, *flat(points)) == (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def test_control_a_neighbour_is_refused(self) -> None:
+        """The double beside the nearest one."""
         points = [(-1.0, -1.0), (1.0, 1.0), (0.0, 0.5), (1.0, 0.0)]
         assert exact_crossing(points)[0] == Fraction(1, 3)
         assert not self.is_exact(points, 0, 1 / 3, np.zeros(SCRATCH_SIZE))
@@ -316,6 +319,7 @@ class TestPairs:
             assert crossing_in_pairs(open_context(), *outside) != unknown
 
     def test_control_the_heads_alone_are_outside(self) -> None:
+        """The heads without their tails."""
         points = generic(random.Random(5))
         x, _, error, *_ = crossing_in_pairs(open_context(), *flat(points))
         assert abs(Fraction(x) - exact_crossing(points)[0]) > Fraction(error)

@@ -54,7 +54,12 @@ def inputs(name: str, precision: int, binades: int, quantum: float = 0.0) -> Axi
     return offsets(OFFSETS[name], 3)
 
 
-@pytest.mark.obligation("K3", "the filters of degree 2 never lie: every input of 3, 4 and 5 bits", method="exhaustive")
+@pytest.mark.obligation(
+    "K3",
+    "the filters of degree 2 never lie: every input of 3, 4 and 5 bits",
+    method="exhaustive",
+    control_in="TestFaultsAreFound",
+)
 class TestFiltersOfDegree2:
     """Over every input of the format, a sign that the filter certifies is the exact one, with the shipped constant for
     the unit roundoff of the format.
@@ -87,7 +92,12 @@ class TestFiltersOfDegree2:
         assert certified > tried / 2
 
 
-@pytest.mark.obligation("K3", "the filter of incircle never lies: every input of tiny formats", method="exhaustive")
+@pytest.mark.obligation(
+    "K3",
+    "the filter of incircle never lies: every input of tiny formats",
+    method="exhaustive",
+    control_in="TestFaultsAreFound",
+)
 class TestIncircle:
     """As above, for incircle.
 
@@ -118,7 +128,12 @@ class TestIncircle:
         assert certified > tried / 3
 
 
-@pytest.mark.obligation("K3", "the filters of angles, areas and lengths never lie: 5 bits", method="exhaustive")
+@pytest.mark.obligation(
+    "K3",
+    "the filters of angles, areas and lengths never lie: 5 bits",
+    method="exhaustive",
+    control_in="TestFaultsAreFound",
+)
 class TestShapes:
     """As above, for all sides that are pairs of integers up to 8 (31 for lengths), and bounds of 5 bits: areas and
     lengths zero or in ten binades; for angles sines and cosines of 1 to 2 and a quarter of that, where the true ones

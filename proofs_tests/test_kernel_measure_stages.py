@@ -144,6 +144,7 @@ class TestStages:
             assert length_code(k, math.nextafter(x, 0.0), 0.0, 0.0, x, 0.0) == code_of(decided, 1)
 
     def test_control_another_factor_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A factor of two in the place of the one that the filter uses."""
         monkeypatch.setattr(measure, "SHAPE_FACTOR", 2.0)
         with pytest.raises(AssertionError):
             self.test_borders("area", 0.0, monkeypatch)
@@ -197,6 +198,7 @@ class TestWindow:
         assert area_code(guarded_context(), largest, *huge) == code_of(Stage.RATIONAL, 1)
 
     def test_control_an_open_context_lies_outside(self) -> None:
+        """A context that trusts coordinates outside of its window."""
         tiny_edge = (0.0, 0.0, 2.0**-600, 0.0)
         assert length_code(make_context(np.ones(1)), 0.0, *tiny_edge) & 3 == 1
         assert length_code(guarded_context(), 0.0, *tiny_edge) & 3 == 2
@@ -215,6 +217,7 @@ class TestWorkspaces:
         assert code(k, 0.0, *[0.1, 0.3] * n) == code_of(Stage.EXPANSION, 0)
 
     def test_control_too_short_a_workspace_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A workspace that is too short."""
         watched_expansions(monkeypatch, measure)
         k: Context = make_context(np.ones(1))._replace(scratch=Workspace.of(67), grid_limit=-1.0)
         with pytest.raises(AssertionError):

@@ -19,6 +19,7 @@ FAMILIES = MappingProxyType(
         "ARR": "Arrangements of segments that cross",
         "P": "Input graphs and files",
         "H": "Holes",
+        "F": "Fuzzing",
         "B": "The conformance suite for other meshers",
     }
 )
@@ -64,6 +65,8 @@ STATEMENTS = MappingProxyType(
         "P2": "points at one position, and only those, share a representative",
         "P3": "rings, GeoJSON and shapely come back bit for bit",
         "P4": "graphs on file come back bit for bit",
+        "F1": "any bytes and any arrays get an answer or a typed error, from every reader and from PSLG",
+        "F2": "what fuzzing found stays fixed",
         "H1": "the seeds of the holes alone carve the same domain",
         "B1": "every planted fault is found within the default budget",
         "B2": "a counterexample is as small as it can be, and shows the same again",
