@@ -79,11 +79,7 @@ class TestNearest:
         assert bisector_crossing(make_context(np.array(flat)), *flat)[2] is True
 
     def test_control_a_neighbour_is_refused(self) -> None:
-<<<<<<< HEAD
         """The double beside the nearest."""
-=======
-        """The double beside the nearest one."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         points = generic(random.Random(3))
         x, _, is_certain = asked(points)
         assert is_certain
@@ -174,10 +170,5 @@ class TestErrors:
         assert needed <= Fraction(bisector._NEARER_BOUND) <= needed + 64 * U * U
 
     def test_control_a_bound_without_the_slack_is_too_small(self) -> None:
-<<<<<<< HEAD
         """The bound without its second-order part."""
         assert Fraction(bisector._NEARER_BOUND) - 32 * U * U < largest_needed(4 * U)
-=======
-        """The bound without its slack."""
-        assert Fraction(bisector._NEARER_BOUND) - 32 * U * U < largest_needed(Bounded(4 * U))
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6

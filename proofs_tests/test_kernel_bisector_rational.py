@@ -48,11 +48,7 @@ class TestArity:
         assert all(handed == taken for handed, taken in found.values())
 
     def test_control_a_callback_left_out_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD:proofs_tests/test_kernel_bisector_rational.py
         """A module that registers nothing by the watched name."""
-=======
-        """A callback left out."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6:proofs_tests/test_kernel_callbacks.py
         monkeypatch.setattr(rational, "_another", None, raising=False)
         assert arities("_another") == {}
 
@@ -78,11 +74,7 @@ class TestAttempts:
 
     @pytest.mark.parametrize(("name", "arity"), ASKED)
     def test_control_answered_at_the_second_try(self, name: str, arity: int, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD:proofs_tests/test_kernel_bisector_rational.py
         """A callback that fails once: two tries, not sixteen."""
-=======
-        """An answer that comes at the second attempt."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6:proofs_tests/test_kernel_callbacks.py
         attempts, mailbox = [], np.zeros(2, dtype=np.int64)
         original = getattr(bisector_rational, f"_ask_{name}")
 

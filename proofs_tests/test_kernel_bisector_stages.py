@@ -136,11 +136,7 @@ class TestStages:
         assert met == {(sign, stage) for sign in (-1, 1) for stage in range(3)}
 
     def test_control_a_laxer_or_a_stricter_border_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD
         """Borders that are half and twice the filter's own."""
-=======
-        """A border that is laxer, and one that is stricter."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         monkeypatch.setattr(bisector, "_NEARER_BOUND", 2.0**-3)
         stages, k, draw = Stages(monkeypatch), make_context(np.ones(1)), random.Random(1)
         for border in (2.0**-2, 2.0**-4):
@@ -169,11 +165,7 @@ class TestWorkspaces:
         assert adaptive(k, *(x for point in points for x in point)) == exact(*points).sign == 0
 
     def test_control_parts_that_overlap_are_noticed(self) -> None:
-<<<<<<< HEAD
         """A layout whose parts share a double, and one beyond the end."""
-=======
-        """Parts of the workspace that overlap."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         whole = Workspace.of(8)
         assert len(whole[0:4]) == len(whole[4:]) == 4
         with pytest.raises(AssertionError, match="overlaps"):

@@ -50,9 +50,7 @@ def bounds(k: Context) -> tuple[float, float, float]:
     return k.orient2d_bound, k.incircle_bound, k.grid_limit
 
 
-@pytest.mark.obligation(
-    "K6", "if any power of two leads into the window, one is found", method="enumeration", control_in="mutants"
-)
+@pytest.mark.obligation("K6", "if any power of two leads into the window, one is found", method="enumeration")
 class TestExponents:
     """An input inside stays; of those that lead one inside from outside, the middle one is taken, and a factor that
     scales; where there is none, nothing changes."""
@@ -84,14 +82,7 @@ class TestExponents:
 
 
 @pytest.mark.obligation(
-<<<<<<< HEAD
     "K6", "a context knows the bounds and the grid of its input, a guarded one nothing", method="named cases"
-=======
-    "K6",
-    "a context knows the bounds and the grid of its input, a guarded one nothing",
-    method="named cases",
-    control_in="proofs_tests/test_kernel_windows.py::TestContext",
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
 )
 class TestBounds:
     """The limit of the grid stage is 4096 units; another's scratch, tally and mailbox are shared, not its bounds."""

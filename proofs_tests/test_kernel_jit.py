@@ -105,14 +105,7 @@ class TestCacheFolder:
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no user ids on this platform")
 @pytest.mark.obligation(
-<<<<<<< HEAD
     "J1", "machine code is taken from one's own folders only, and thrown away when 30 days unused", method="named cases"
-=======
-    "J1",
-    "machine code is taken from one's own folders only, and thrown away when 30 days unused",
-    method="named cases",
-    control_in="TestCacheFolder",
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
 )
 class TestCacheRules:
     """Who is trusted, what is kept, and where the folders are."""
@@ -181,14 +174,7 @@ def _increment(x: float) -> float:
 
 
 @pytest.mark.obligation(
-<<<<<<< HEAD
     "J1", "compiled without fast-math and without heap; interpreted where numba is told so", method="named cases"
-=======
-    "J1",
-    "compiled without fast-math and without heap; interpreted where numba is told so",
-    method="named cases",
-    control_in="TestBothLanes",
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
 )
 class TestSettings:
     """What numba is asked for, and in which folder."""

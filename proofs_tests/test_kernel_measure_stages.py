@@ -144,11 +144,7 @@ class TestStages:
             assert length_code(k, math.nextafter(x, 0.0), 0.0, 0.0, x, 0.0) == code_of(decided, 1)
 
     def test_control_another_factor_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD
         """A filter with half of its factor."""
-=======
-        """A factor of two in the place of the one that the filter uses."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         monkeypatch.setattr(measure, "SHAPE_FACTOR", 2.0)
         with pytest.raises(AssertionError):
             self.test_borders("area", 0.0, monkeypatch)
@@ -203,11 +199,7 @@ class TestWindow:
         assert area_code(guarded_context(), largest, *huge) == code_of(Stage.RATIONAL, 1)
 
     def test_control_an_open_context_lies_outside(self) -> None:
-<<<<<<< HEAD
         """A context that trusts coordinates outside of the window."""
-=======
-        """A context that trusts coordinates outside of its window."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         tiny_edge = (0.0, 0.0, 2.0**-600, 0.0)
         assert length_code(make_context(np.ones(1)), 0.0, *tiny_edge) & 3 == 1
         assert length_code(guarded_context(), 0.0, *tiny_edge) & 3 == 2
@@ -226,11 +218,7 @@ class TestWorkspaces:
         assert code(k, 0.0, *[0.1, 0.3] * n) == code_of(Stage.EXPANSION, 0)
 
     def test_control_too_short_a_workspace_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD
         """A workspace one double too short."""
-=======
-        """A workspace that is too short."""
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         watched_expansions(monkeypatch, measure)
         k: Context = make_context(np.ones(1))._replace(scratch=Workspace.of(67), grid_limit=-1.0)
         with pytest.raises(AssertionError):

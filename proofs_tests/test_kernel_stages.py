@@ -63,9 +63,7 @@ def cells(n: int) -> Iterator[list[tuple[int, int]]]:
         yield [*zip(values[::2], values[1::2], strict=True), (1, -1)]
 
 
-@pytest.mark.obligation(
-    "K7", "a filter certifies exactly what exceeds its bound", method="exhaustive", control_in="mutants"
-)
+@pytest.mark.obligation("K7", "a filter certifies exactly what exceeds its bound", method="exhaustive")
 class TestFilterBorder:
     """On small integers, where nothing rounds: the sign where |sum of terms| > bound * sum of |terms|, else 0.
 
@@ -100,7 +98,7 @@ class TestFilterBorder:
         record_property("cases", cases)
 
 
-@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive", control_in="mutants")
+@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive")
 class TestGridAlone:
     """With bounds so blunt that the filters certify nothing, the grid stage decides all small integers, exactly; and
     where it does not know of the grid, incircle finds it, and the others do without."""
@@ -155,9 +153,7 @@ WINDOWS = [
 ]
 
 
-@pytest.mark.obligation(
-    "K6", "one coordinate outside the window suffices for the rationals", method="enumeration", control_in="mutants"
-)
+@pytest.mark.obligation("K6", "one coordinate outside the window suffices for the rationals", method="enumeration")
 class TestEveryCoordinateIsGuarded:
     """Whichever coordinate is one step outside: rational; no other, and not zero, ever is."""
 
@@ -175,9 +171,7 @@ class TestEveryCoordinateIsGuarded:
                 assert staged(*np.reshape(outside, (n, 2)))[1] == ek.Stage.RATIONAL
 
 
-@pytest.mark.obligation(
-    "K6", "a common grid is used exactly where there is one", method="exhaustive", control_in="mutants"
-)
+@pytest.mark.obligation("K6", "a common grid is used exactly where there is one", method="exhaustive")
 class TestGridOfFour:
     """Without a context, the grid stage of incircle answers exactly what the filter does not, where all differences
     are doubles, and multiples of some unit of at least 1/4096 of the largest (rounded up to a power of two)."""
@@ -219,53 +213,7 @@ class TestGridOfFour:
         return [oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))]
 
 
-<<<<<<< HEAD
 @pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
-=======
-@pytest.mark.obligation(
-    "K7",
-    "double-doubles answer exactly what exceeds 64 u^2 times the permanent",
-    method="named cases",
-    control_in="mutants",
-)
-class TestDoubleDoubleBorder:
-    """At the border itself the expansions answer, one step beyond it the double-doubles."""
-
-    @pytest.mark.parametrize("s", [1.0, -1.0])
-    def test_products(self, s: float) -> None:
-        """1 * 1 - 1 * (1 - t) = t, and the permanent is 2; by turns in each of the four factors."""
-        border = float(64 * U2 * 2)
-        scratch = np.empty(48)
-        for i in range(4):
-            for size, stage in [
-                (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
-                (border, ek.Stage.EXPANSION),
-                (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
-            ]:
-                tails = [0.0] * 4
-                tails[i] = s * size
-                pairs = [x for tail in tails for x in (1.0, tail)]
-                answer = s if i < 2 else -s
-                assert products_difference(*pairs, scratch) == int(stage) * 4 + answer + 1
-
-    @pytest.mark.parametrize("s", [1.0, -1.0])
-    @pytest.mark.parametrize("axis", [0, 1])
-    def test_incircle(self, s: float, axis: int) -> None:
-        """A corner of the unit square moves by t along an edge: the determinant is t - t^2, the permanent 4."""
-        border = float(64 * U2 * 4)
-        for size, stage in [
-            (math.nextafter(border, 0.0), ek.Stage.EXPANSION),
-            (border, ek.Stage.EXPANSION),
-            (math.nextafter(border, 1.0), ek.Stage.DOUBLE_DOUBLE),
-        ]:
-            corner = (s * size, 0.0) if axis == 0 else (0.0, s * size)
-            assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
-
-
-@pytest.mark.obligation(
-    "K7", "a loop tallies every call, under the stage that decided it", method="named cases", control_in="mutants"
-)
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
 class TestTally:
     """One call, one more of one stage, in the predicate's own row; ties that are broken count as incircle."""
 

@@ -66,12 +66,7 @@ STATEMENTS = MappingProxyType(
         "P2": "points at one position, and only those, share a representative",
         "P3": "rings, GeoJSON and shapely come back bit for bit",
         "P4": "graphs on file come back bit for bit",
-<<<<<<< HEAD
         "P5": "whatever the bytes, a reader returns what they say, or a typed error that names the culprit",
-=======
-        "F1": "any bytes and any arrays get an answer or a typed error, from every reader and from PSLG",
-        "F2": "what fuzzing found stays fixed",
->>>>>>> 1c17f1bd652d14b461f8e2837a1096b7d026f7f6
         "H1": "the seeds of the holes alone carve the same domain",
         "B1": "every planted fault is found within the default budget",
         "B2": "a counterexample is as small as it can be, and shows the same again",
