@@ -36,11 +36,13 @@ class TestFound:
         with pytest.raises(GeometryError, match=r"type is .*, no type of GeoJSON"):
             PSLG.from_geojson({"type": kind})
 
-    def test_stl_that_claims_a_billion_triangles(self, tmp_path: Path) -> None:
-        """MemoryError: 29.9 GiB for a file of 90 bytes, where that much cannot be had."""
-        path = tmp_path / "a.stl"
-        path.write_bytes(b"0" * 80 + struct.pack("<I", 1145980164) + b"0" * 7)
-        with limited(), pytest.raises(FileFormatError, match=r"a\.stl: meshio asks for more memory than there is"):
+    def test_meshb_that_claims_a_billion_vertices(self, tmp_path: Path) -> None:
+        """MemoryError: tens of gigabytes for a file of 40 bytes, where that much cannot be had."""
+        path = tmp_path / "a.meshb"
+        path.write_bytes(
+            bytes.fromhex("01000000 03000000 03000000 30000000 00000000 03000000 30000000") + b"\0" * 5 + b"0" * 7
+        )
+        with limited(), pytest.raises(FileFormatError, match=r"a\.meshb: meshio asks for more memory than there is"):
             given_mesh(path)
 
     @pytest.mark.parametrize("triangles", [3, 40, 4000])

@@ -4,6 +4,7 @@ import os
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # the lines of compiled functions cannot be watched
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +13,7 @@ from proofs_tests.fuzzing.campaign import Campaign, Outcome, require_atheris
 from proofs_tests.fuzzing.judging import Target
 from proofs_tests.fuzzing.targets import TARGETS, target_named
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from exactmesh.errors import ExactMeshError
@@ -28,6 +29,10 @@ def shown(outcomes: list[Outcome]) -> Table:
     return table
 
 
+def _tick(progress: Progress, task: TaskID, before: float, over: float) -> None:
+    progress.update(task, completed=before + over)
+
+
 def run(chosen: list[Target], seconds: float, folder: Path, console: Console) -> list[Outcome]:
     """Fuzz the targets one after another, each for so long."""
     columns = (
@@ -41,10 +46,8 @@ def run(chosen: list[Target], seconds: float, folder: Path, console: Console) ->
         task = progress.add_task("", total=seconds * len(chosen), found=0)
         for turn, target in enumerate(chosen):
             progress.update(task, description=target.name)
-            before = turn * seconds
-            outcome = campaign.fuzzed(
-                target, seconds, lambda over, before=before: progress.update(task, completed=before + over)
-            )  # type: ignore[misc]  # a default binds it
+            tick = partial(_tick, progress, task, turn * seconds)
+            outcome = campaign.fuzzed(target, seconds, tick)
             outcomes.append(outcome)
             progress.update(task, found=sum(len(one.findings) for one in outcomes))
             if not console.is_terminal:

@@ -73,7 +73,7 @@ def _member_seeds() -> Sequence[bytes]:
     found = []
     for archived in _npz_seeds():
         with zipfile.ZipFile(io.BytesIO(archived)) as archive:
-            parts = []
+            parts: list[bytes] = []
             for info in archive.infolist():
                 content = archive.read(info)
                 number = _NAMES.index(info.filename.removesuffix(".npy"))

@@ -1,5 +1,7 @@
 """``PSLG`` and rings: what they let pass can be triangulated and refined, and the verifier agrees."""
 
+from typing import Any, cast
+
 import numpy as np
 from proofs_tests.fuzzing.cursor import Cursor, number_bytes, table_bytes
 from proofs_tests.fuzzing.judging import Target, require
@@ -18,13 +20,17 @@ def _graph(cursor: Cursor) -> PSLG:
     flags, rule = cursor.byte(), _RULES[cursor.count(3)]
     points = cursor.table(2, 12, integers=False)
     segments = cursor.table(2, 14, integers=True)
-    holes = cursor.table(2, 2, integers=False) if flags & 1 else None
-    regions = cursor.table(4, 2, integers=False) if flags & 2 else None
-    markers = cursor.table(1, 12, integers=True) if flags & 4 else None
-    attributes = cursor.table(2, 12, integers=False) if flags & 8 else None
-    return PSLG(  # type: ignore[arg-type]  # arrays, and what people take for arrays
-        points, segments, holes=holes, regions=regions, point_markers=markers, point_attributes=attributes, rule=rule
-    )
+    given: dict[str, Any] = {"rule": rule}  # arrays, and what people take for arrays
+    if flags & 1:
+        given["holes"] = cursor.table(2, 2, integers=False)
+    if flags & 2:
+        given["regions"] = cursor.table(4, 2, integers=False)
+    if flags & 4:
+        column = cursor.table(1, 12, integers=True)
+        given["point_markers"] = column.reshape(-1) if isinstance(column, np.ndarray) else column
+    if flags & 8:
+        given["point_attributes"] = cursor.table(2, 12, integers=False)
+    return PSLG(cast(Any, points), cast(Any, segments), **given)
 
 
 def _pslg(data: bytes) -> None:

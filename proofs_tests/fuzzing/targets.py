@@ -7,7 +7,7 @@ from exactmesh.errors import ExactMeshError
 
 __all__ = ["TARGETS", "UnknownTargetError", "target_named"]
 
-TARGETS = {
+TARGETS: dict[str, Target] = {
     target.name: target
     for room in (triangle_files, archives, texts, meshes, foreign, graphs)
     for target in room.TARGETS
