@@ -47,7 +47,9 @@ class Planes:
         return [dest(self.plane.org, e) for e in range(0, 4 * self.edges, 2) if origin(self.plane.org, e) == v]
 
 
-@pytest.mark.obligation("M5", "an edge between two vertices is found, or which of them has fewer", method="exhaustive")
+@pytest.mark.obligation(
+    "M5", "an edge between two vertices is found, or which of them has fewer", method="exhaustive", control_in="mutants"
+)
 @pytest.mark.parametrize("name", SETS)
 class TestEdgesAreFound:
     """A spoke leaves every vertex, and none leaves what only lies in the place of one. Between any two vertices the
@@ -170,7 +172,10 @@ class TestPieces:
 
 
 @pytest.mark.obligation(
-    "M5", "overlaps that do not fit into the memory are refused, and no others", method="enumeration"
+    "M5",
+    "overlaps that do not fit into the memory are refused, and no others",
+    method="enumeration",
+    control_in="mutants",
 )
 class TestMemory:
     """The rows are doubled as long as twice as many fit into the memory; the error says how many there were, and names
@@ -213,7 +218,9 @@ class TestMemory:
             assert refused.value.indices == (long,)
 
 
-@pytest.mark.obligation("M5", "progress counts points, then segments, up to all", method="enumeration")
+@pytest.mark.obligation(
+    "M5", "progress counts points, then segments, up to all", method="enumeration", control_in="mutants"
+)
 class TestProgress:
     """After each piece of work the number of points and segments that are done is told, and how many there are."""
 
@@ -236,7 +243,9 @@ def column(height: int) -> list[Pair]:
 
 
 @inlined
-@pytest.mark.obligation("M5", "scratch has room for a cavity with vertices that come twice", method="named cases")
+@pytest.mark.obligation(
+    "M5", "scratch has room for a cavity with vertices that come twice", method="named cases", control_in="mutants"
+)
 class TestRoomForCavities:
     """A segment below a column of vertices crosses two edges of each, and the polygon above it has every vertex twice:
     the longest that there can be. Filled by search or by chance, it fits, and is constrained Delaunay."""

@@ -34,7 +34,9 @@ def flat(points: Sequence[Pair]) -> SimpleNamespace:
 CORNERS = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
 
 
-@pytest.mark.obligation("M4", "the first triangle is that of the first vertices that span one", method="exhaustive")
+@pytest.mark.obligation(
+    "M4", "the first triangle is that of the first vertices that span one", method="exhaustive", control_in="mutants"
+)
 class TestTheFirstTriangle:
     """second_position and first_turn find what a search from the start finds, in any part of the points; the triangle
     and its three ghosts are a closed surface, and its vertices have moved to the front together with their names."""
@@ -201,7 +203,12 @@ class TestLocate:
 
 
 @inlined
-@pytest.mark.obligation("M4", "a point is in conflict with a triangle just when it is in its disk", method="exhaustive")
+@pytest.mark.obligation(
+    "M4",
+    "a point is in conflict with a triangle just when it is in its disk",
+    method="exhaustive",
+    control_in="mutants",
+)
 class TestInConflict:
     """in_conflict is membership in the open (perturbed) disk, from whichever corner the triangle is named; the disk of
     a ghost triangle is the open half plane beyond its hull edge. A triangle is in conflict with none of its corners."""
@@ -226,7 +233,12 @@ class TestInConflict:
                 assert MODULE.in_conflict(all_.k, all_.xy, 9, *corners, p) is bool(expected)
 
 
-@pytest.mark.obligation("M4", "after each insertion: Delaunay, three edges more, degree - 3 flips", method="exhaustive")
+@pytest.mark.obligation(
+    "M4",
+    "after each insertion: Delaunay, three edges more, degree - 3 flips",
+    method="exhaustive",
+    control_in="mutants",
+)
 @pytest.mark.parametrize("name", STARTS)
 class TestOneInsertion:
     """A vertex that comes in adds three edges, and flips as many as its degree exceeds three, whether it comes inside a
@@ -283,7 +295,10 @@ class TestOneInsertion:
 
 
 @pytest.mark.obligation(
-    "M4", "vertices are numbered as their points come; of equal ones the first", method="exhaustive"
+    "M4",
+    "vertices are numbered as their points come; of equal ones the first",
+    method="exhaustive",
+    control_in="mutants",
 )
 class TestNumbers:
     """For every order of up to five points and every way in which they coincide, the vertices are the places in the
@@ -307,7 +322,10 @@ class TestNumbers:
 
 
 @pytest.mark.obligation(
-    "M4", "so many points are taken at a time, and not more than can be numbered", method="named cases"
+    "M4",
+    "so many points are taken at a time, and not more than can be numbered",
+    method="named cases",
+    control_in="mutants",
 )
 class TestLimits:
     """Three points are enough, two are not; there may be MAX_POINTS, whose edges just fit 31 bits, and no more; the

@@ -28,7 +28,9 @@ def raised(kind: type[ek.ExactMeshError], function: Callable[[], object]) -> tup
     return str(caught.value), caught.value.indices
 
 
-@pytest.mark.obligation("K7", "an integer array passes exactly where it holds doubles", method="named cases")
+@pytest.mark.obligation(
+    "K7", "an integer array passes exactly where it holds doubles", method="named cases", control_in="mutants"
+)
 class TestIntegerArrays:
     """For every integer type: its extremes pass if they are doubles, and are refused by index if not; the check never
     casts a number to a type that does not hold it, which means something else on each processor."""
@@ -82,7 +84,10 @@ class TestIntegerArrays:
 
 
 @pytest.mark.obligation(
-    "K7", "a refusal names the culprits, five of them at most, and shows the first", method="named cases"
+    "K7",
+    "a refusal names the culprits, five of them at most, and shows the first",
+    method="named cases",
+    control_in="mutants",
 )
 class TestRefusals:
     """Messages and ``indices``, for one to seven culprits in any column."""
@@ -153,7 +158,9 @@ class TestRefusals:
         assert shown(value) == (text if len(text) <= 120 else f"{text[:100]}...{text[-17:]}")
 
 
-@pytest.mark.obligation("K7", "a batch gives every sign, whatever its length and its chunks", method="differential")
+@pytest.mark.obligation(
+    "K7", "a batch gives every sign, whatever its length and its chunks", method="differential", control_in="mutants"
+)
 class TestChunks:
     """Every row is decided, the first and the last of each chunk as well, and in its own place."""
 

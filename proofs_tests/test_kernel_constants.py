@@ -22,7 +22,10 @@ LARGEST = Fraction(2) ** 1023
 
 
 @pytest.mark.obligation(
-    "K1", "the constants of the filters are the smallest that are sound, but for u", method="calculus"
+    "K1",
+    "the constants of the filters are the smallest that are sound, but for u",
+    method="calculus",
+    control_in="mutants",
 )
 class TestSharpness:
     """The unit roundoff is half the distance of 1 from the next double. A bound is at least what the calculus of
@@ -40,7 +43,9 @@ class TestSharpness:
         assert needed <= Fraction(bound) < needed * (1 + Fraction(1, 10**12))
 
 
-@pytest.mark.obligation("K6", "the windows are as wide as under- and overflow let them be", method="calculus")
+@pytest.mark.obligation(
+    "K6", "the windows are as wide as under- and overflow let them be", method="calculus", control_in="mutants"
+)
 class TestWindows:
     """Each end is the last power of two for which the determinant of its degree neither under- nor overflows."""
 
@@ -104,7 +109,9 @@ def bits(x: float) -> int:
     return (n // (n & -n)).bit_length() if n else 0
 
 
-@pytest.mark.obligation("K5", "split and two_product are error-free for doubles", method="named cases")
+@pytest.mark.obligation(
+    "K5", "split and two_product are error-free for doubles", method="named cases", control_in="mutants"
+)
 class TestSplitter:
     """The halves of a double have at most 26 bits and its sum; a product and its error sum to the exact product."""
 
@@ -121,7 +128,7 @@ class TestSplitter:
                 assert Fraction(x) + Fraction(y) == -Fraction(a * scale) * Fraction(b)
 
 
-@pytest.mark.obligation("K7", "a code says one sign and one stage", method="exhaustive")
+@pytest.mark.obligation("K7", "a code says one sign and one stage", method="exhaustive", control_in="mutants")
 class TestCodes:
     """Every stage with every sign is encoded by one small integer, as documented: stage * 4 + sign + 1."""
 
@@ -139,7 +146,9 @@ class TestCodes:
         assert [int(stage) for stage in ek.Stage] == [0, 1, 2, 3, 4]
 
 
-@pytest.mark.obligation("J1", "Ctrl-C waits for no more than a chunk, rational or not", method="named cases")
+@pytest.mark.obligation(
+    "J1", "Ctrl-C waits for no more than a chunk, rational or not", method="named cases", control_in="mutants"
+)
 class TestChunks:
     """Where every predicate may be rational, which takes as long as a hundred others, a chunk is that much smaller."""
 

@@ -27,7 +27,9 @@ def compiled(points: Sequence[Cell], k: Context) -> int:
     return int(incircle_perturbed_adaptive(k, *np.ravel(points).astype(float).tolist()))
 
 
-@pytest.mark.obligation("K9", "perturbed incircle has the sign of its definition", method="exhaustive")
+@pytest.mark.obligation(
+    "K9", "perturbed incircle has the sign of its definition", method="exhaustive", control_in="mutants"
+)
 class TestDefinition:
     """Every four of seven points of a square, in every order: the sign is that of the lifted determinant, which changes
     with the parity of the order; zero where the smallest point or any other occurs twice, or all lie on a line."""

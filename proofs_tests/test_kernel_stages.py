@@ -64,7 +64,9 @@ def cells(n: int) -> Iterator[list[tuple[int, int]]]:
         yield [*zip(values[::2], values[1::2], strict=True), (1, -1)]
 
 
-@pytest.mark.obligation("K7", "a filter certifies exactly what exceeds its bound", method="exhaustive")
+@pytest.mark.obligation(
+    "K7", "a filter certifies exactly what exceeds its bound", method="exhaustive", control_in="mutants"
+)
 class TestFilterBorder:
     """On small integers, where nothing rounds: the sign where |sum of terms| > bound * sum of |terms|, else 0.
 
@@ -99,7 +101,7 @@ class TestFilterBorder:
         record_property("cases", cases)
 
 
-@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive")
+@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive", control_in="mutants")
 class TestGridAlone:
     """With bounds so blunt that the filters certify nothing, the grid stage decides all small integers, exactly; and
     where it does not know of the grid, incircle finds it, and the others do without."""
@@ -154,7 +156,9 @@ WINDOWS = [
 ]
 
 
-@pytest.mark.obligation("K6", "one coordinate outside the window suffices for the rationals", method="enumeration")
+@pytest.mark.obligation(
+    "K6", "one coordinate outside the window suffices for the rationals", method="enumeration", control_in="mutants"
+)
 class TestEveryCoordinateIsGuarded:
     """Whichever coordinate is one step outside: rational; no other, and not zero, ever is."""
 
@@ -172,7 +176,9 @@ class TestEveryCoordinateIsGuarded:
                 assert staged(*np.reshape(outside, (n, 2)))[1] == ek.Stage.RATIONAL
 
 
-@pytest.mark.obligation("K6", "a common grid is used exactly where there is one", method="exhaustive")
+@pytest.mark.obligation(
+    "K6", "a common grid is used exactly where there is one", method="exhaustive", control_in="mutants"
+)
 class TestGridOfFour:
     """Without a context, the grid stage of incircle answers exactly what the filter does not, where all differences
     are doubles, and multiples of some unit of at least 1/4096 of the largest (rounded up to a power of two)."""
@@ -215,7 +221,10 @@ class TestGridOfFour:
 
 
 @pytest.mark.obligation(
-    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
+    "K7",
+    "double-doubles answer exactly what exceeds 64 u^2 times the permanent",
+    method="named cases",
+    control_in="mutants",
 )
 class TestDoubleDoubleBorder:
     """At the border itself the expansions answer, one step beyond it the double-doubles."""
@@ -253,7 +262,9 @@ class TestDoubleDoubleBorder:
             assert ek.incircle_staged((1, 0), (1, 1), (0, 1), corner) == (s, stage)
 
 
-@pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
+@pytest.mark.obligation(
+    "K7", "a loop tallies every call, under the stage that decided it", method="named cases", control_in="mutants"
+)
 class TestTally:
     """One call, one more of one stage, in the predicate's own row; ties that are broken count as incircle."""
 

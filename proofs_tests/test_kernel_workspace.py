@@ -125,7 +125,9 @@ def operand(n: int) -> Floats:
 PAIR = (1.0, 0.0)
 
 
-@pytest.mark.obligation("K5", "no expansion outgrows its room, none is overwritten while in use", method="enumeration")
+@pytest.mark.obligation(
+    "K5", "no expansion outgrows its room, none is overwritten while in use", method="enumeration", control_in="mutants"
+)
 class TestWorkspace:
     """With every expansion as long as it can be, each fits where it is written, and lasts as long as it is read."""
 

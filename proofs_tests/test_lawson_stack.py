@@ -134,7 +134,9 @@ class TestTheStack:
             assert lawson(POINTS[name], start).canonical() == expected
 
 
-@pytest.mark.obligation("M3", "lawson hands over what constrained_delaunay does", method="differential")
+@pytest.mark.obligation(
+    "M3", "lawson hands over what constrained_delaunay does", method="differential", control_in="mutants"
+)
 class TestTheResult:
     """With segments, every attribute is what constrained_delaunay(carve=False) has: no regions, no holes."""
 

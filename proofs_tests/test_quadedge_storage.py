@@ -16,7 +16,9 @@ from exactmesh.ids import OUTSIDE
 INT32 = range(-(2**31), 2**31)
 
 
-@pytest.mark.obligation("M1", "an edge keeps its four labels, whatever else is made or deleted", method="exhaustive")
+@pytest.mark.obligation(
+    "M1", "an edge keeps its four labels, whatever else is made or deleted", method="exhaustive", control_in="mutants"
+)
 class TestLabels:
     """Every int32 is a label, and no other integer; each edge keeps its two vertices and two faces while others are
     made, labelled and deleted, whatever the capacity; a new edge has the ends that were asked for and OUTSIDE twice."""
@@ -109,7 +111,9 @@ def three_edges() -> QuadEdge:
     return surface
 
 
-@pytest.mark.obligation("M1", "an edge that is none of the quad-edge's is refused by name", method="exhaustive")
+@pytest.mark.obligation(
+    "M1", "an edge that is none of the quad-edge's is refused by name", method="exhaustive", control_in="mutants"
+)
 class TestStrangers:
     """Whatever quarter-edge is asked for, it is there or the error names its edge; so with edges of other quad-edges,
     with dual ones, and with those between which and their neighbors there are no two triangles."""

@@ -69,7 +69,9 @@ def _read(call: ast.Call, place: str, classes: Mapping[str, ast.ClassDef]) -> Ob
         if keywords:
             raise ValueError(f"unknown: {', '.join(keywords)}")
         controls = [*_controls(node)]
-        if elsewhere is not None:
+        if elsewhere == "mutants":
+            controls.append(Control("mutants", "mutants of the source (X1)"))
+        elif elsewhere is not None:
             other = elsewhere if "::" in elsewhere else f"{place.partition('::')[0]}::{elsewhere}"
             controls += (
                 Control(control.name, f"{control.fault} ({elsewhere.rpartition('::')[2]})")
@@ -78,7 +80,7 @@ def _read(call: ast.Call, place: str, classes: Mapping[str, ast.ClassDef]) -> Ob
     except (ValueError, KeyError) as error:
         raise MarkerError(
             f"{place}, line {node.lineno}: the marker is obligation(id, statement, method=, control_in=), all literals,"
-            f" method one of {', '.join(Method)}, control_in at most a class here or a file::class: {error!r}"
+            f" method one of {', '.join(Method)}, control_in at most 'mutants', a class here or a file::class: {error!r}"
         ) from error
     return Obligation(identifier, statement, method, place, node.lineno, tuple(controls))
 
