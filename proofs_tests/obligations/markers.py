@@ -80,7 +80,8 @@ def _read(call: ast.Call, place: str, classes: Mapping[str, ast.ClassDef]) -> Ob
     except (ValueError, KeyError) as error:
         raise MarkerError(
             f"{place}, line {node.lineno}: the marker is obligation(id, statement, method=, control_in=), all literals,"
-            f" method one of {', '.join(Method)}, control_in at most 'mutants', a class here or a file::class: {error!r}"
+            f" method one of {', '.join(Method)}; control_in"
+            f" mutants, a class here or a file::class, if at all: {error!r}"
         ) from error
     return Obligation(identifier, statement, method, place, node.lineno, tuple(controls))
 
