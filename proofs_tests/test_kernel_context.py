@@ -84,7 +84,10 @@ class TestExponents:
 
 
 @pytest.mark.obligation(
-    "K6", "a context knows the bounds and the grid of its input, a guarded one nothing", method="named cases"
+    "K6",
+    "a context knows the bounds and the grid of its input, a guarded one nothing",
+    method="named cases",
+    control_in="mutants",
 )
 class TestBounds:
     """The limit of the grid stage is 4096 units; another's scratch, tally and mailbox are shared, not its bounds."""

@@ -98,7 +98,10 @@ def source(function: Callable[..., int]) -> Callable[..., int]:
 
 
 @pytest.mark.obligation(
-    "J1", "each question to the rational stage has its own number, and only its answer counts", method="named cases"
+    "J1",
+    "each question to the rational stage has its own number, and only its answer counts",
+    method="named cases",
+    control_in="mutants",
 )
 class TestQuestions:
     """The sign is what the answer says that bears the question's number; sixteen attempts are made, each with a new

@@ -298,7 +298,9 @@ class TestTally:
             assert not broken.any()
 
 
-@pytest.mark.obligation("K5", "the expansions of incircle are exact, whatever the tails", method="named cases")
+@pytest.mark.obligation(
+    "K5", "the expansions of incircle are exact, whatever the tails", method="named cases", control_in="mutants"
+)
 class TestLiftedTerm:
     """(a^2 + A^2) (b C - c B) of pairs of doubles, component by component summed in fractions; and the determinant."""
 
