@@ -50,7 +50,9 @@ def bounds(k: Context) -> tuple[float, float, float]:
     return k.orient2d_bound, k.incircle_bound, k.grid_limit
 
 
-@pytest.mark.obligation("K6", "if any power of two leads into the window, one is found", method="enumeration")
+@pytest.mark.obligation(
+    "K6", "if any power of two leads into the window, one is found", method="enumeration", control_in="mutants"
+)
 class TestExponents:
     """An input inside stays; of those that lead one inside from outside, the middle one is taken, and a factor that
     scales; where there is none, nothing changes."""
@@ -82,7 +84,10 @@ class TestExponents:
 
 
 @pytest.mark.obligation(
-    "K6", "a context knows the bounds and the grid of its input, a guarded one nothing", method="named cases"
+    "K6",
+    "a context knows the bounds and the grid of its input, a guarded one nothing",
+    method="named cases",
+    control_in="mutants",
 )
 class TestBounds:
     """The limit of the grid stage is 4096 units; another's scratch, tally and mailbox are shared, not its bounds."""

@@ -105,7 +105,10 @@ class TestCacheFolder:
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no user ids on this platform")
 @pytest.mark.obligation(
-    "J1", "machine code is taken from one's own folders only, and thrown away when 30 days unused", method="named cases"
+    "J1",
+    "machine code is taken from one's own folders only, and thrown away when 30 days unused",
+    method="named cases",
+    control_in="mutants",
 )
 class TestCacheRules:
     """Who is trusted, what is kept, and where the folders are."""
@@ -174,7 +177,10 @@ def _increment(x: float) -> float:
 
 
 @pytest.mark.obligation(
-    "J1", "compiled without fast-math and without heap; interpreted where numba is told so", method="named cases"
+    "J1",
+    "compiled without fast-math and without heap; interpreted where numba is told so",
+    method="named cases",
+    control_in="mutants",
 )
 class TestSettings:
     """What numba is asked for, and in which folder."""

@@ -34,7 +34,7 @@ def rational_points(points: tuple[tuple[Fraction, Fraction], ...]) -> list[ratio
     return [(mpq(x), mpq(y)) for x, y in points]
 
 
-@pytest.mark.obligation("K7", "the rational predicates are the definitions", method="enumeration")
+@pytest.mark.obligation("K7", "the rational predicates are the definitions", method="enumeration", control_in="mutants")
 class TestRational:
     """On thirds of a small grid, off its centre, in every order, and with coordinates of 10^40 and 10^-40."""
 
@@ -98,7 +98,10 @@ def source(function: Callable[..., int]) -> Callable[..., int]:
 
 
 @pytest.mark.obligation(
-    "J1", "each question to the rational stage has its own number, and only its answer counts", method="named cases"
+    "J1",
+    "each question to the rational stage has its own number, and only its answer counts",
+    method="named cases",
+    control_in="mutants",
 )
 class TestQuestions:
     """The sign is what the answer says that bears the question's number; sixteen attempts are made, each with a new

@@ -63,7 +63,9 @@ def cells(n: int) -> Iterator[list[tuple[int, int]]]:
         yield [*zip(values[::2], values[1::2], strict=True), (1, -1)]
 
 
-@pytest.mark.obligation("K7", "a filter certifies exactly what exceeds its bound", method="exhaustive")
+@pytest.mark.obligation(
+    "K7", "a filter certifies exactly what exceeds its bound", method="exhaustive", control_in="mutants"
+)
 class TestFilterBorder:
     """On small integers, where nothing rounds: the sign where |sum of terms| > bound * sum of |terms|, else 0.
 
@@ -98,7 +100,7 @@ class TestFilterBorder:
         record_property("cases", cases)
 
 
-@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive")
+@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive", control_in="mutants")
 class TestGridAlone:
     """With bounds so blunt that the filters certify nothing, the grid stage decides all small integers, exactly; and
     where it does not know of the grid, incircle finds it, and the others do without."""
@@ -153,7 +155,9 @@ WINDOWS = [
 ]
 
 
-@pytest.mark.obligation("K6", "one coordinate outside the window suffices for the rationals", method="enumeration")
+@pytest.mark.obligation(
+    "K6", "one coordinate outside the window suffices for the rationals", method="enumeration", control_in="mutants"
+)
 class TestEveryCoordinateIsGuarded:
     """Whichever coordinate is one step outside: rational; no other, and not zero, ever is."""
 
@@ -171,7 +175,9 @@ class TestEveryCoordinateIsGuarded:
                 assert staged(*np.reshape(outside, (n, 2)))[1] == ek.Stage.RATIONAL
 
 
-@pytest.mark.obligation("K6", "a common grid is used exactly where there is one", method="exhaustive")
+@pytest.mark.obligation(
+    "K6", "a common grid is used exactly where there is one", method="exhaustive", control_in="mutants"
+)
 class TestGridOfFour:
     """Without a context, the grid stage of incircle answers exactly what the filter does not, where all differences
     are doubles, and multiples of some unit of at least 1/4096 of the largest (rounded up to a power of two)."""
@@ -213,7 +219,9 @@ class TestGridOfFour:
         return [oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))]
 
 
-@pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
+@pytest.mark.obligation(
+    "K7", "a loop tallies every call, under the stage that decided it", method="named cases", control_in="mutants"
+)
 class TestTally:
     """One call, one more of one stage, in the predicate's own row; ties that are broken count as incircle."""
 
@@ -247,7 +255,9 @@ class TestTally:
             assert not broken.any()
 
 
-@pytest.mark.obligation("K5", "the expansions of incircle are exact, whatever the tails", method="named cases")
+@pytest.mark.obligation(
+    "K5", "the expansions of incircle are exact, whatever the tails", method="named cases", control_in="mutants"
+)
 class TestLiftedTerm:
     """(a^2 + A^2) (b C - c B) of pairs of doubles, component by component summed in fractions; and the determinant."""
 

@@ -37,7 +37,11 @@ def written(folder: Path, arguments: str, body: str = METHOD) -> list[Obligation
 def gaps(obligations: list[Obligation]) -> list[str]:
     """Return what is missing: in a marker, a control, or what a control says."""
     missing = [f"{o.place}: no obligation {o.id}" for o in obligations if o.id not in STATEMENTS]
-    missing += [f"{o.place}: no negative control" for o in obligations if not o.controls]
+    missing += [
+        f'{o.place}: no negative control, and no control_in="TestThat" or "mutants"'
+        for o in obligations
+        if not o.controls
+    ]
     missing += [f"{o.place}: what is the fault of {c.name}?" for o in obligations for c in o.controls if not c.fault]
     lines = defaultdict(list)
     for o in obligations:

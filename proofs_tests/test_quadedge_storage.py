@@ -84,7 +84,7 @@ class TestLabels:
         assert 4 * sys.modules["exactmesh.quadedge"].MAX_EDGES == 2**31
 
 
-@pytest.mark.obligation("M1", "a handle is a value", method="named cases")
+@pytest.mark.obligation("M1", "a handle is a value", method="named cases", control_in="mutants")
 class TestHandles:
     """A handle cannot be changed, and nothing hung on it; two are equal, and one in a set, iff they mean the same edge
     of the same quad-edge. An edge that was given no vertices has -1 at its ends."""
@@ -173,7 +173,9 @@ class TestStrangers:
         )
 
 
-@pytest.mark.obligation("M1", "the first quarter-edge at fault is named where some are missing", method="exhaustive")
+@pytest.mark.obligation(
+    "M1", "the first quarter-edge at fault is named where some are missing", method="exhaustive", control_in="mutants"
+)
 class TestMissingQuarters:
     """A quarter-edge is missing where its edge was not deleted, or leads to nothing, or breaks an axiom: the first of
     these is named, in every state of two edges of which any one quarter, or two, are taken out."""
@@ -199,7 +201,9 @@ class TestMissingQuarters:
         return entries[after] == -1 or turned == -1 or turned // 4 * 4 + (turned + 1) % 4 != q
 
 
-@pytest.mark.obligation("M1", "arrays of wrong lengths are refused by their lengths", method="exhaustive")
+@pytest.mark.obligation(
+    "M1", "arrays of wrong lengths are refused by their lengths", method="exhaustive", control_in="mutants"
+)
 class TestLengths:
     """A ring of k entries is taken just when 4 divides k and there are k / 2 vertices and faces."""
 

@@ -62,7 +62,9 @@ def measured(points: FloatArray, line: FloatArray) -> Search:
     return search
 
 
-@pytest.mark.obligation("V1", "distances from a segment are compared exactly", method="differential")
+@pytest.mark.obligation(
+    "V1", "distances from a segment are compared exactly", method="differential", control_in="mutants"
+)
 class TestDistances:
     """The order along the segment and the order of the distances are those of the fractions; what is noted of a vertex
     encloses its distance, narrowly."""

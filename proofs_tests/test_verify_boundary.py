@@ -68,7 +68,9 @@ EXACT = oracles.rationals(POINTS)
 CONVEX = [cycle for cycle in cycles_of(9, 5, 1) if is_convex(EXACT, cycle)] + [(0, 3, 6, 7, 8, 5, 2, 1)]
 
 
-@pytest.mark.obligation("V1", "a boundary is called convex, or one loop, just when it is", method="enumeration")
+@pytest.mark.obligation(
+    "V1", "a boundary is called convex, or one loop, just when it is", method="enumeration", control_in="mutants"
+)
 class TestCycles:
     """Of every cycle of vertices of a small grid, and of some cycles together, convex_cycle tells whether it is one
     convex, counterclockwise cycle, and then which (theorem C); is_one_loop whether it is one. However few steps at a
@@ -117,7 +119,10 @@ class TestCycles:
 
 
 @pytest.mark.obligation(
-    "V1", "a point lies outside of a convex cycle just when an edge separates it", method="exhaustive"
+    "V1",
+    "a point lies outside of a convex cycle just when an edge separates it",
+    method="exhaustive",
+    control_in="mutants",
 )
 class TestOutside:
     """Of all points of a finer and larger grid, outside_of names those that are strictly on the right of an edge,
@@ -146,7 +151,9 @@ class TestOutside:
 Mask = npt.NDArray[np.bool_]
 
 
-@pytest.mark.obligation("V1", "positions are found where there are any, exactly", method="exhaustive")
+@pytest.mark.obligation(
+    "V1", "positions are found where there are any, exactly", method="exhaustive", control_in="mutants"
+)
 class TestPositions:
     """corners_at finds for each wanted position a used point that is there, and none where there is none, in whatever
     order they come; -0.0 is 0.0. lexicographic_order and first_at_position are those of sorting tuples."""

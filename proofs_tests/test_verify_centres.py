@@ -134,7 +134,9 @@ def meshes(holes: bool) -> Iterator[tuple[FloatArray, list[Triangle]]]:
         yield points, [t for t in triangles if not holes or rng.random() < 0.7]
 
 
-@pytest.mark.obligation("V1", "a walk ends in a triangle that holds the circumcentre", method="differential")
+@pytest.mark.obligation(
+    "V1", "a walk ends in a triangle that holds the circumcentre", method="differential", control_in="mutants"
+)
 class TestWalk:
     """Where the walk ends the circumcentre is; in a Delaunay triangulation of a convex region it finds every one that
     is inside."""
@@ -222,7 +224,9 @@ class TestOutline:
         assert centres._between(sign * mpq(largest)) == (sign * largest, sign * largest)
 
 
-@pytest.mark.obligation("V1", "centres outside are told with their triangles", method="named cases")
+@pytest.mark.obligation(
+    "V1", "centres outside are told with their triangles", method="named cases", control_in="mutants"
+)
 class TestMessages:
     """A row of obtuse triangles: each is told, the first hundred in words, in pieces of any size."""
 

@@ -161,7 +161,9 @@ def around(points: Sequence[Place], v: int, w: int) -> tuple[int, float]:
 SQUARE = [(float(x), float(y)) for x in range(-2, 3) for y in range(-2, 3)]
 
 
-@pytest.mark.obligation("V1", "neighbours are sorted by direction, then distance", method="exhaustive")
+@pytest.mark.obligation(
+    "V1", "neighbours are sorted by direction, then distance", method="exhaustive", control_in="mutants"
+)
 class TestSpokes:
     """All directions of a grid of five by five: their order, and the first neighbour in each."""
 

@@ -141,7 +141,9 @@ class TestGrade:
             assert grading.grade(weight, weight, 0.5) == UNKNOWN
 
 
-@pytest.mark.obligation("V1", "each pass grades and measures as fractions do", method="differential")
+@pytest.mark.obligation(
+    "V1", "each pass grades and measures as fractions do", method="differential", control_in="mutants"
+)
 class TestPasses:
     """Where a pass knows the side it is that of the fractions, nearly always it knows, and its measure is the true one:
     of circles, right angles, areas, lengths and angles a few units in the last place from equality, and far from it."""
@@ -243,7 +245,7 @@ class TestPasses:
         assert {*sides} == {RESOLVED, ROUNDING_SIZED}
 
 
-@pytest.mark.obligation("V1", "a triangle is as wrong as its worst part", method="enumeration")
+@pytest.mark.obligation("V1", "a triangle is as wrong as its worst part", method="enumeration", control_in="mutants")
 class TestWorstPart:
     """Of three edges or angles one that is wrong makes the triangle wrong; without any, one that double-doubles cannot
     tell leaves it to rationals: in every order."""
@@ -287,7 +289,10 @@ class TestWorstPart:
 
 
 @pytest.mark.obligation(
-    "V1", "violations are ranked by size, what doubles leave open by fractions", method="enumeration"
+    "V1",
+    "violations are ranked by size, what doubles leave open by fractions",
+    method="enumeration",
+    control_in="mutants",
 )
 class TestRanked:
     """Wrong ones come first, the larger before the smaller, ties by position; what is unknown is asked for, once."""
@@ -358,7 +363,9 @@ class TestRanked:
         assert (tiny.sine, tiny.sine_tail, tiny.cosine, tiny.cosine_tail) == (0.0, 0.0, 1.0, 0.0)
 
 
-@pytest.mark.obligation("V1", "the corner across an edge is that of its other triangle", method="enumeration")
+@pytest.mark.obligation(
+    "V1", "the corner across an edge is that of its other triangle", method="enumeration", control_in="mutants"
+)
 class TestFarCorners:
     """For every inner edge of a mesh the row names its two triangles' third corners, the near one and the far one."""
 

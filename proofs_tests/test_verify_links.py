@@ -176,7 +176,9 @@ class TestKinds:
                 assert found_kinds(links_of(mesh)) == expected_kinds(cells_of(mesh))
 
 
-@pytest.mark.obligation("V1", "a bucket is sorted and searched within its bounds", method="exhaustive")
+@pytest.mark.obligation(
+    "V1", "a bucket is sorted and searched within its bounds", method="exhaustive", control_in="mutants"
+)
 class TestBuckets:
     """sort_bucket sorts just its bucket; place_slots tells whether an edge occurs twice in it; slot_of finds the first
     slot of an edge in it, sorted or, below the bound, not, and none of the buckets beside it."""
@@ -224,7 +226,10 @@ def naive_parts(across: Sequence[Sequence[int]]) -> list[set[int]]:
 
 
 @pytest.mark.obligation(
-    "V1", "rows across edges, and the parts they leave connected, are those of a search", method="enumeration"
+    "V1",
+    "rows across edges, and the parts they leave connected, are those of a search",
+    method="enumeration",
+    control_in="mutants",
 )
 class TestAdjacency:
     """Each slot's row is that of the cell that lists its edge; the row across an edge that of the cell that lists its
@@ -293,7 +298,9 @@ def broken_vertices(cells: Sequence[Cell]) -> set[int]:
     return {v for v, edges in opposite.items() if not oracles.is_one_fan(edges)}
 
 
-@pytest.mark.obligation("V1", "edges that occur twice and broken fans are those of a search", method="property-based")
+@pytest.mark.obligation(
+    "V1", "edges that occur twice and broken fans are those of a search", method="property-based", control_in="mutants"
+)
 class TestManifold:
     """EDGE_MANIFOLD fails once for each directed edge that is listed more than once, and names the first two cells;
     VERTEX_MANIFOLD once for each vertex round which the cells form no single fan. However few at a time."""
@@ -340,7 +347,7 @@ class TestManifold:
                 assert violation.message.startswith(start)
 
 
-@pytest.mark.obligation("V1", "local numbers are a renaming", method="property-based")
+@pytest.mark.obligation("V1", "local numbers are a renaming", method="property-based", control_in="mutants")
 class TestLocal:
     """Corners are numbered as the list comes upon them, triangles first; the local cells and points, renamed back, are
     the cells and their points."""

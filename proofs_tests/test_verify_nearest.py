@@ -31,7 +31,9 @@ def lattice(seed: int, n: int = N) -> FloatArray:
     return np.random.default_rng(seed).integers(-size, size, (n, 2)).astype(np.float64)
 
 
-@pytest.mark.obligation("V1", "the search in the tree finds what a look at all finds", method="differential")
+@pytest.mark.obligation(
+    "V1", "the search in the tree finds what a look at all finds", method="differential", control_in="mutants"
+)
 class TestTree:
     """The least distance, all that is within reach and nothing else, each once, as far as there is room."""
 
