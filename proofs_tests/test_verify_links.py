@@ -75,6 +75,9 @@ def lists(count: int, width: int, most: int) -> list[list[Cell]]:
 
 LISTS = [*lists(60, 3, 4), *lists(60, 3, 14), *lists(20, 3, 60), *lists(25, 4, 6)]
 LISTS += [one + other for one, other in zip(lists(25, 3, 8), lists(25, 4, 5), strict=True)]
+#: Two closed fans round one vertex, without a boundary.
+TWO_FANS: list[Cell] = [(0, 1, 2), (0, 2, 3), (0, 3, 1), (0, 4, 5), (0, 5, 6), (0, 6, 4)]
+LISTS += 3 * [TWO_FANS]
 LISTS += [list(t) for t in islice(triangulations(PLACES), 0, None, 3)]
 
 
