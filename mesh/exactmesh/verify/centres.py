@@ -194,7 +194,6 @@ class Outline:
         swap = a[:, 0] > b[:, 0]
         self.left, self.right = np.where(swap[:, None], b, a), np.where(swap[:, None], a, b)
         self.low = np.minimum(a[:, 1], b[:, 1])
-        self.high = np.maximum(a[:, 1], b[:, 1])
         self.cuts = np.unique(np.sort(a[:, 0])[:: int(len(a) ** 0.5) + 1])
         first, last = (np.searchsorted(self.cuts, ends[:, 0], side="right") for ends in (self.left, self.right))
         counts = last - first + 1
