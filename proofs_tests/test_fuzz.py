@@ -2,7 +2,7 @@
 
 import random
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import pytest
 from proofs_tests.fuzzing.judging import Breach, Target, judged, require
@@ -20,7 +20,7 @@ MUTANTS = 300
 SLOW = {"pslg": 60, "rings": 100, "dictionary": 100, "verify": 100, "objects": 100, "foreign": 150}
 
 
-def breaches(target: Target, inputs: list[bytes]) -> list[tuple[bytes, Breach]]:
+def breaches(target: Target, inputs: Sequence[bytes]) -> list[tuple[bytes, Breach]]:
     found = [(data, judged(target, data)) for data in inputs]
     return [(data, breach) for data, breach in found if breach is not None]
 
