@@ -108,7 +108,10 @@ class TestWindows:
 
 
 @pytest.mark.obligation(
-    "K7", "double-doubles answer exactly what exceeds 64 u^2 times the permanent", method="named cases"
+    "K7",
+    "double-doubles answer exactly what exceeds 64 u^2 times the permanent",
+    method="named cases",
+    control_in="mutants",
 )
 class TestDoubleDoubleBorder:
     """At the border itself the expansions answer, one step beyond it the double-doubles."""
