@@ -122,6 +122,8 @@ class TestRecorded:
         assert path.read_text() == first
         update(path, {place: Figures(25.0, 300, 0)}, [place])
         assert load(path)[place] == (25.0, 300, 0)
+        update(path, {place: Figures(2.0, 300, 0, 1)}, [place])  # a test failed
+        assert load(path)[place] == (25.0, 300, 0)
         update(path, {}, ["another"])
         assert load(path) == {}
 
@@ -143,9 +145,9 @@ class TestRecorded:
         recorded = json.loads((tmp_path / "recorded.json").read_text())
         seconds = {place: figures.pop("seconds") for place, figures in recorded.items()}
         assert recorded == {
-            "test_it.py::TestExamples": {"cases": 30, "skipped": 0},
-            "test_it.py::TestReported": {"cases": 720 + 1, "skipped": 0},
-            "test_it.py::TestSkipped": {"cases": 3, "skipped": 1},
+            "test_it.py::TestExamples": {"cases": 30, "skipped": 0, "failed": 0},
+            "test_it.py::TestReported": {"cases": 720 + 1, "skipped": 0, "failed": 0},
+            "test_it.py::TestSkipped": {"cases": 3, "skipped": 1, "failed": 0},
         }
         assert seconds["test_it.py::TestReported"] > 0.25 > seconds["test_it.py::TestSkipped"]
 

@@ -28,12 +28,13 @@ class Figures:
     seconds: float = 0.0
     cases: int = 0
     skipped: int = 0
+    failed: int = 0
 
     @classmethod
     def of(cls, report: pytest.TestReport) -> "Figures":
         """Return what one report says: of the three phases of a test, the call has its cases."""
         recorded = dict(report.user_properties)
-        figures = cls(float(str(recorded.get("processor seconds", 0.0))), 0, int(report.skipped))
+        figures = cls(float(str(recorded.get("processor seconds", 0.0))), 0, int(report.skipped), int(report.failed))
         if report.when == "call" and report.passed:
             reported = [int(str(value)) for name, value in report.user_properties if name == "cases"]
             figures.cases = sum(reported) if reported else int(str(recorded.get("examples", 1)))
@@ -43,6 +44,7 @@ class Figures:
         self.seconds += other.seconds
         self.cases += other.cases
         self.skipped += other.skipped
+        self.failed += other.failed
         return self
 
 
@@ -56,10 +58,15 @@ def load(path: Path = MEASURED) -> dict[str, Measured]:
 def update(path: Path, figures: Mapping[str, Figures], places: Iterable[str]) -> None:
     """Put what was measured into the file, for classes that have a marker; forget those that have none."""
     before = load(path)
-    after = {place: _rounded(figures[place], before.get(place)) for place in places if place in figures}
+    after = {place: _rounded(figures[place], before.get(place)) for place in places if _passed(figures, place)}
     kept = {place: before[place] for place in places if place in before}
     entries = [f'"{place}": {json.dumps(entry._asdict())}' for place, entry in sorted((kept | after).items())]
     path.write_text("{\n" + ",\n".join(entries) + "\n}\n", encoding="utf-8")
+
+
+def _passed(figures: Mapping[str, Figures], place: str) -> bool:
+    """Tell whether all tests of the class that ran passed: of what fails no figure is taken."""
+    return place in figures and figures[place].failed == 0
 
 
 def _rounded(new: Figures, old: Measured | None) -> Measured:

@@ -24,7 +24,7 @@ def processor_seconds() -> float:
 
 
 class Recorder:
-    """Counts where tests run, gathers where reports arrive, and writes at the end of a run without failures."""
+    """Counts where tests run, gathers where reports arrive, and writes at the end of a run."""
 
     def __init__(self, path: Path, *, writes: bool) -> None:
         self.path = path
@@ -75,5 +75,5 @@ class Recorder:
         self.figures[place] += Figures.of(report)
 
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        if self.writes and exitstatus == pytest.ExitCode.OK:
+        if self.writes and exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
             update(self.path, self.figures, {obligation.place for obligation in collect()})
