@@ -4,10 +4,11 @@ import xml.etree.ElementTree as ElementTree
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from coverage import CoverageData
-from proofs_tests.mutation.mutants import Mutant
+from proofs_tests.mutation.mutants import Mutant, statement_of
 
 __all__ = ["Covering"]
 
@@ -32,10 +33,20 @@ class Covering:
         cases = [case for path in times for case in ElementTree.parse(path).iter("testcase")]
         return cls(lines, {_node(case): float(case.attrib["time"]) for case in cases})
 
+    @cached_property
+    def touched(self) -> Mapping[str, set[str]]:
+        """The files that each test, or the making of a test file's fixtures, runs lines of."""
+        files: dict[str, set[str]] = defaultdict(set)
+        for file, lines in self.lines.items():
+            for contexts in lines.values():
+                for context in contexts:
+                    files[context].add(file)
+        return files
+
     def tests(self, mutant: Mutant) -> list[str]:
-        """Return the tests that run the mutated line, or if it runs on import, all that run a line of its folder."""
+        """Return the tests that run the mutated statement; if it runs on import, all that run a line of its folder."""
         lines = self.lines.get(mutant.file, {})
-        contexts = set(lines.get(mutant.line, ()))
+        contexts = {context for line in statement_of(mutant) for context in lines.get(line, ())}
         if contexts == {""}:  # processes that tests start run lines in no context as well
             folder = Path(mutant.file).parent
             near = [there for file, there in self.lines.items() if Path(file).parent == folder]
@@ -45,9 +56,9 @@ class Covering:
         return sorted(found, key=lambda test: self._cost(mutant, test))
 
     def _cost(self, mutant: Mutant, test: str) -> float:
-        """Quick tests first, and first of all those of files named after the mutated one."""
-        named = Path(mutant.file).stem.strip("_") in test.split("::")[0]
-        return (self.seconds[test] + 0.002) * (0.2 if named else 1.0)
+        """Quick tests first, and those that are about little else: they run lines of few files, this one among them."""
+        files = self.touched.get(test, set())
+        return (self.seconds[test] + 0.002) * (len(files) + 1) * (1 if mutant.file in files else 4)
 
 
 def _node(case: ElementTree.Element) -> str:

@@ -9,15 +9,17 @@ the interpreted lane.
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import cosmic_ray.plugins
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.operators.operator import Operator
-from parso.python.tree import Number
+from parso.python.tree import Number, PythonLeaf
+from parso.tree import NodeOrLeaf
 
-__all__ = ["Mutant", "mutants_of", "source_files"]
+__all__ = ["Mutant", "mutants_of", "source_files", "statement_of"]
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -92,10 +94,38 @@ def mutants_of(file: str) -> Iterator[Mutant]:
         for occurrence, (node, (start, _)) in enumerate(places):
             if isinstance(node, Number) and occurrence % 2 == _is_zero(node):
                 continue
+            if _is_marker(node):
+                continue
             if not any(first <= start < last for first, last in unread):
                 inner = [(first, qualified) for first, last, qualified in functions if first <= start[0] <= last]
                 function = max(inner)[1] if inner else ""
                 yield Mutant(file, name, occurrence, start[0], function, lines[start[0] - 1].strip())
+
+
+def statement_of(mutant: Mutant) -> range:
+    """Return the lines of the innermost statement around the mutated line; of a compound one, its head."""
+    spans = [span for span in _statements(mutant.file) if mutant.line in span]
+    return min(spans, key=len, default=range(mutant.line, mutant.line + 1))
+
+
+@cache
+def _statements(file: str) -> list[range]:
+    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.stmt):
+            body = getattr(node, "body", [])
+            last = body[0].lineno - 1 if body else (node.end_lineno or node.lineno)
+            found.append(range(node.lineno, max(last, node.lineno) + 1))
+    return found
+
+
+def _is_marker(node: NodeOrLeaf) -> bool:
+    """Tell whether a star makes the parameters after it keywords: cosmic-ray takes it for a product."""
+    if not isinstance(node, PythonLeaf) or node.value != "*":
+        return False
+    following: PythonLeaf | None = node.get_next_leaf()  # type: ignore[no-untyped-call]  # parso's types end here
+    return following is not None and following.value == ","
 
 
 def _is_zero(number: Number) -> bool:
