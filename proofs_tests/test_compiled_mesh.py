@@ -87,10 +87,12 @@ class TestMachineCode:
 
 
 LONG_RUN = """
+import signal
 import sys
 import numpy as np
 from exactmesh import delaunay, lawson, verify
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a job in the background lacks
 few = np.ldexp(np.random.default_rng(0).random((30, 2)), np.arange(-600, 600, 20).reshape(30, 2))  # no window
 mesh = delaunay(few)
 lawson(few, mesh.triangles)

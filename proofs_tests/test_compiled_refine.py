@@ -68,8 +68,10 @@ class TestMachineCode:
 
 
 LONG_RUN = """
+import signal
 from exactmesh import PSLG, refine
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a job in the background lacks
 square = PSLG([(0, 0), (1, 0), (1, 1), (0, 1)], [(0, 1), (1, 2), (2, 3), (3, 0)])
 before = refine(square, max_area=0.01).triangulation
 told = []
