@@ -268,7 +268,10 @@ def break_tie(
         i, x, y = 2, cx, cy
     if before(dx, dy, x, y):
         i, x, y = 3, dx, dy
-    if same(ax, ay, x, y) + same(bx, by, x, y) + same(cx, cy, x, y) + same(dx, dy, x, y) > 1:
+    if (
+        (i != 0 and same(ax, ay, x, y)) or (i != 1 and same(bx, by, x, y))
+        or (i != 2 and same(cx, cy, x, y)) or (i != 3 and same(dx, dy, x, y))
+    ):  # fmt: skip
         return 0
     return cofactor(k, i, ax, ay, bx, by, cx, cy, dx, dy)
 
