@@ -185,7 +185,7 @@ def refine(
         domain: a graph, or a triangulation (or what ``refine`` returned), which is refined further; the regions of the
             graph bound areas, too.
         min_angle: the least angle, degrees, 0 (no bound) to 40. Up to 20.7 is proved to succeed where segments meet at
-            90 degrees or more, up to 18.4 where at 60; up to 33 does nearly always.
+            90 degrees or more, up to 18.4 where at 60.
         max_area: the largest area; or, of a triangulation, one for each of its triangles, not positive for none: it
             holds for triangles whose centroid is there.
         size: a positive length: no edge is to be longer; or a function, called with centroids (k, 2), that returns such
