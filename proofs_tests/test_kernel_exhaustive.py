@@ -27,7 +27,7 @@ FORMATS = [
     ("nearer", 6, 0),
 ]
 
-#: A multiple of u below the shipped constant with which lies are found, and where. Larger ones were not tried for all rows.
+#: A multiple of u, below the shipped constant, with which lies are found, and where; not always the largest one.
 UNSOUND = [
     ("orient2d", 3, 3, 1.0),
     ("orient2d", 4, 3, 1.5),
