@@ -9,7 +9,7 @@ from proofs_tests.obligations.method import Method
 
 __all__ = ["Control", "MarkerError", "Obligation", "collect"]
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 
 
 class MarkerError(ValueError):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 
-from proofs_tests.shape_oracle import cosine_interval
+from proofs_tests.kernel.shape_oracle import cosine_interval
 
 __all__ = ["FACTORS", "FORMULAS", "filter_sign", "naive_sign"]
 

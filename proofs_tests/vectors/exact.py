@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
-from proofs_tests.shape_oracle import compare_angle
+from proofs_tests.kernel.shape_oracle import compare_angle
 
 __all__ = [
     "along",

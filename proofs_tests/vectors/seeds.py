@@ -4,7 +4,7 @@ they are rounded to doubles."""
 from fractions import Fraction
 from math import isqrt
 
-from proofs_tests.shape_oracle import cosine_interval
+from proofs_tests.kernel.shape_oracle import cosine_interval
 from proofs_tests.vectors.randomness import Random
 
 __all__ = ["Exact", "nearly", "zero"]
