@@ -239,7 +239,7 @@ class TestAblation:
         """The checks of triangles and edges taken out, one by one."""
         brutes = [(BruteForce(points), points) for points in list(CONFIGURATIONS.values())[:6]]
         cases = [(brute, points, rows) for brute, points in brutes for rows in list(all_sets(brute))[::5]]
-        monkeypatch.setattr(deciding, check, holds)  # with it nothing disagrees: TestEverySetOfFivePoints
+        monkeypatch.setattr(deciding, check, holds)  # with it nothing disagrees: TestEverySet
         assert any(disagreements(*case) for case in cases)
 
     def test_control_without_simplicity_the_double_cover_passes(self, monkeypatch: pytest.MonkeyPatch) -> None:
