@@ -20,6 +20,8 @@ from proofs_tests.rounding.scripts import (
     value_of,
 )
 
+pytestmark = pytest.mark.once  # the provers read sources
+
 SCRIPTS = scripts()
 NAMES = [script.name for script in SCRIPTS]
 CONTROLS = [(script, control) for script in SCRIPTS for control in script.controls]
