@@ -10,7 +10,8 @@ import typer
 from proofs_tests.mutation.campaign import Result, campaign, read_results
 from proofs_tests.mutation.covering import Covering
 from proofs_tests.mutation.mutants import Mutant, mutants_of, source_files
-from proofs_tests.mutation.survivors import Survivors, described, page
+from proofs_tests.mutation.page import page
+from proofs_tests.mutation.survivors import Survivors, described
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 __all__ = ["main"]
