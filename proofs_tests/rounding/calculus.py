@@ -93,6 +93,7 @@ class Value:
         e: its error, relative to the computed permanent.
         tree: the permanent.
         summands: the larger error of what it is the sum of, None if it is no sum.
+        is_term: its magnitude is its permanent; that of a sum of two signs, or of a multiple of one, is smaller.
         is_magnitude: it is its own permanent.
     """
 
@@ -100,6 +101,7 @@ class Value:
     e: Fraction
     tree: Tree
     summands: Fraction | None = None
+    is_term: bool = True
     is_magnitude: bool = False
 
     def _other(self, other: "Value | float") -> "Value":
@@ -115,11 +117,12 @@ class Value:
         largest = max(self.e, other.e)
         e = (Bounded(self.e) + Bounded(other.e)).e
         magnitude = self.is_magnitude and other.is_magnitude
-        return Value(self.recorder, e, _sorted("+", self.tree, other.tree), largest, magnitude)
+        return Value(self.recorder, e, _sorted("+", self.tree, other.tree), largest, magnitude, magnitude)
 
     def _difference(self, given: "Value | float") -> "Value":
         different = self._sum(given)
-        return Value(self.recorder, different.e, different.tree, different.summands)
+        is_term = different.summands is None  # of inputs
+        return Value(self.recorder, different.e, different.tree, different.summands, is_term)
 
     def __add__(self, other: "Value | float") -> "Value":
         assert self.tree[0] != "input", "a sum of inputs has another permanent"
@@ -135,16 +138,17 @@ class Value:
         e = (Bounded(self.e) * Bounded(other.e)).e
         if "constant" in (self.tree[0], other.tree[0]):
             e = max(self.e, other.e)
-        magnitude = self is other or (self.is_magnitude and other.is_magnitude)
-        return Value(self.recorder, e, _sorted("*", self.tree, other.tree), is_magnitude=magnitude)
+        is_term = self.is_term and other.is_term
+        magnitude = is_term and (self is other or (self.is_magnitude and other.is_magnitude))
+        return Value(self.recorder, e, _sorted("*", self.tree, other.tree), None, is_term, magnitude)
 
     __rmul__ = __mul__
 
     def __neg__(self) -> "Value":
-        return Value(self.recorder, self.e, self.tree, self.summands)
+        return Value(self.recorder, self.e, self.tree, self.summands, self.is_term)
 
     def __abs__(self) -> "Value":
-        assert self.is_magnitude or self.tree[0] != "+", "the magnitude of a sum is not its permanent"
+        assert self.is_term, "the magnitude of a sum is not its permanent, nor is that of a multiple of it"
         return Value(self.recorder, self.e, self.tree, self.summands, is_magnitude=True)
 
     def __gt__(self, other: "Value") -> bool:

@@ -139,6 +139,25 @@ class TestConstants:
         assert recorder.found
         assert not any(decision.is_permanent for decision in recorder.found)
 
+    @pytest.mark.parametrize(
+        ("function", "edit"),
+        [
+            ("determinant_and_permanent", ("(abs(bC) + abs(cB)) * lift_a", "abs((bC - cB) * lift_a)")),
+            ("determinant_and_permanent", ("(abs(bC) + abs(cB)) * lift_a", "((bC - cB) * (bC - cB)) * lift_a")),
+            ("incircle_filter", ("bound * permanent", "bound * abs(det)")),
+        ],
+    )
+    def test_control_a_permanent_with_cancellation_is_refused(self, function: str, edit: tuple[str, str]) -> None:
+        """The magnitude, or the square, of a difference in the place of its permanent."""
+        mini = MiniFloat(53, constants=LATER, edits={function: edit})
+        recorder = Recorder()
+        decide = derive([determinant_and_permanent, incircle_filter], mini, Backend.PYTHON)["incircle_filter"]
+        try:
+            decide(*after_bound(INCIRCLE_BOUND, "abcd")(recorder))
+        except AssertionError:
+            return
+        assert not any(decision.is_permanent for decision in recorder.found)
+
 
 def is_implied(hypotheses: Sequence[Any], conclusion: Any) -> bool:
     """z3 finds no reals that satisfy the hypotheses and not the conclusion."""
