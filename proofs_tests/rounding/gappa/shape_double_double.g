@@ -2,7 +2,8 @@
 # Each is a sum of three products (areas), of two squares and a third (lengths), or of two products with a sine and a
 # cosine (angles), relative to its weight. Scaled so that the exact weight is 1: t, r, q, filled to parts x, y, z. A
 # product errs by 8 u^2, for angles by 8 + 3 (cross product), 1 (sine in a pair) and 8 u^2; a sum by 3 u^2 each. Tails
-# of products of the sine, and the squared bound, may underflow: an operation by 2^-1075, less than 64 of them, f.
+# of products of the sine, and the squared bound, may underflow: an operation by 2^-1075, less than 64 of them, f;
+# the exact weight is more than half of the computed one, which is at least SMALLEST_WEIGHT.
 #
 # code: exactkernel.angle.corner_code
 #   | if SMALLEST_WEIGHT <= weight <= LARGEST_WEIGHT:
@@ -12,9 +13,9 @@
 # code: exactkernel.measure.length_code
 #   | sign = beyond(dd_add(squared, squared_tail, -limit, -limit_tail)[0], DD_BOUND * weight)
 # constant: 0x1p-100 = exactkernel.constants.DD_BOUND
-# constant: 1b-219 = 2^6 * 2^-1075 / exactkernel.constants.SMALLEST_WEIGHT
+# constant: 1b-218 = 2^6 * 2^-1074 / exactkernel.constants.SMALLEST_WEIGHT
 # control, a quarter of the bound: 0x1p-100 => 0x1p-102
-# control, no guard against underflow: /\ |f| <= 1b-219 =>
+# control, no guard against underflow: /\ |f| <= 1b-218 =>
 
 C = 0x1p-100;
 r = (1 - t) * v; q = (1 - t) * (1 - v);
@@ -24,7 +25,7 @@ K = C * (1 + g);
 
 { t in [0, 1] /\ v in [0, 1] /\ |x| <= 1 /\ |y| <= 1 /\ |z| <= 1
   /\ |l| <= 0x18p-106 /\ |m| <= 0x18p-106 /\ |n| <= 0x18p-106 /\ |a| <= 0x3.001p-106 /\ |b| <= 0x3.001p-106
-  /\ |f| <= 1b-219 /\ |h| <= 1b-53 /\ |g| <= 1b-48 /\ det - K >= 0 -> DET >= 1b-103 }
+  /\ |f| <= 1b-218 /\ |h| <= 1b-53 /\ |g| <= 1b-48 /\ det - K >= 0 -> DET >= 1b-103 }
 
 DET -> (((det - K) + K) / (1 + h) - f) / (1 + b) - (t * l + r * m + q * n) - (t * (x + l) + r * (y + m)) * a
   { (1 + b) <> 0, (1 + h) <> 0 };
