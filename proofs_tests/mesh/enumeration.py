@@ -35,7 +35,7 @@ def grid(width: int, height: int) -> list[tuple[int, int]]:
 #: Eight points exactly on one circle: every choice is a tie.
 CIRCLE_OF_EIGHT = [(25, 0), (20, 15), (7, 24), (-15, 20), (-25, 0), (-24, -7), (0, -25), (15, -20)]
 
-#: Published numbers of triangulations that use all points: Catalan; OEIS A296165 [Aichholzer 2006].
+#: Published numbers of triangulations that use all points: Catalan; OEIS A082640 [Aichholzer 2006].
 COUNTS: dict[str, tuple[list[tuple[int, int]], int]] = {
     "convex quadrilateral": ([(i, i * i) for i in range(4)], 2),
     "convex hexagon": ([(i, i * i) for i in range(6)], 14),

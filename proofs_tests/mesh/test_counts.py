@@ -16,7 +16,7 @@ from exactmesh import edgealgebra as algebra
 Points = list[tuple[int, int]]
 
 CATALAN = {3: 1, 4: 2, 5: 5, 6: 14, 7: 42, 8: 132, 9: 429, 10: 1430}
-#: OEIS A082640 (any points of the grid) and A296165 (all of them).
+#: OEIS A082640: with all points, that is, unimodular; its second column is A296165.
 GRIDS = {(3, 3): 64, (3, 4): 852, (3, 5): 12170, (4, 4): 46456}
 #: The fewest triangulations of n points in general position, 3 to 10, and the most, 3 to 9 [Aichholzer 2006].
 FEWEST = {3: 1, 4: 1, 5: 2, 6: 4, 7: 11, 8: 30, 9: 89, 10: 250}

@@ -171,9 +171,16 @@ def is_proved(body: str) -> bool:
 
 
 def certificate(body: str) -> tuple[str, str]:
-    """Return the proof for Coq, the identities of hints as lemmas, and the name of its theorem."""
+    """Return the proof for Coq, the identities of hints as lemmas, and the name of its theorem.
+
+    Raises:
+        ValueError: a hypothesis is left. Where its section ends, it becomes a premise, which Print Assumptions is silent
+            about.
+    """
     run = subprocess.run(["gappa", "-Bcoq"], input=body, capture_output=True, text=True, check=True)
     proof = re.sub(r"^Hypothesis (a\d+ : .*)$", rf"Lemma \1\n{REWRITING}", run.stdout, flags=re.MULTILINE)
+    if re.search(r"\b(?:Hypothes[ie]s|Axioms?|Parameters?|Conjecture|Admitted)\b", proof):
+        raise ValueError("the certificate assumes what it does not prove")
     theorem = re.findall(r"^(?:Lemma|Theorem) (\w+) :", proof, flags=re.MULTILINE)[-1]
     return "Require Import Reals.\n" + proof, theorem
 

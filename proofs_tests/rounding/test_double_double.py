@@ -21,7 +21,7 @@ def pairs(precision: int, exponents: range) -> Floats:
     """Every (head, tail) with a positive head in these binades and a tail of at most half a unit in its last place."""
     heads = np.arange(2.0 ** (precision - 1), 2.0**precision)
     tails = all_numbers(precision, range(LEAST, 0))
-    tails = np.unique(tails[(abs(tails) < 0.5) & (tails % 2.0**LEAST == 0.0)])
+    tails = np.unique(tails[(abs(tails) <= 0.5) & (tails % 2.0**LEAST == 0.0)])
     scaled = [(h * 2.0**e, t * 2.0**e) for e in exponents for h in heads for t in tails]
     return np.array(scaled)
 

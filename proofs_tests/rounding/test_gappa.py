@@ -120,6 +120,14 @@ class TestProofs:
         with pytest.raises(Exception, match="coqc"):
             prints_of(proof, theorem, tmp_path)
 
+    def test_control_a_hypothesis_that_is_left_is_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A hint that is not turned into a lemma: where the section ends, it is a premise of the theorem."""
+        need("gappa")
+        body = next(s.body for s in SCRIPTS if s.name == "nearest_certain")
+        monkeypatch.setattr("proofs_tests.rounding.scripts.re.sub", lambda _pattern, _new, text, **_: text)
+        with pytest.raises(ValueError, match="assumes"):
+            certificate(body)
+
     def test_control_an_assumption_is_noticed(self, tmp_path: Path) -> None:
         """A theorem that rests on an axiom of its own."""
         need("coqc")

@@ -166,7 +166,7 @@ class TestWorkspace:
     @pytest.mark.parametrize("axis", [0, 1])
     def test_beyond_a_coordinate(self, monkeypatch: pytest.MonkeyPatch, axis: int) -> None:
         longest = longest_in(monkeypatch, centre, "_lifted")
-        source(centre._beyond)(axis, *PAIR, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, room(1000))
+        source(centre._beyond)(axis, *PAIR, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, room(820))
         assert longest.calls == 16
 
     def test_on_a_line(self, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 # Inside the window of degree 4 the filters of degree 4 neither under- nor overflow: lifts, cross products, their
 # products and the sum of three err relatively by at most u each, which is what the calculus and incircle_term.g assume.
+# The product of permanent and bound may underflow; as in orient2d_window.g, that does no harm.
 #
 # code: exactkernel.incircle.determinant_and_permanent
 #   | lift_a, lift_b, lift_c = a * a + A * A, b * b + B * B, c * c + C * C

@@ -1,5 +1,7 @@
-# Inside the window of degree 2 the filters of orient2d and diametral neither under- nor overflow: every operation errs
-# relatively by at most u, which is what orient2d_filter.g assumes. Both are p q - r s of four differences.
+# Inside the window of degree 2 the filters of orient2d and diametral neither under- nor overflow up to the permanent:
+# every operation errs relatively by at most u, which is what orient2d_filter.g assumes. Both are p q - r s of four
+# differences. The product of permanent and bound may underflow, which does no harm: det is a double, and rounding is
+# monotone, so det > fl(y) only if det > y.
 #
 # code: exactkernel.orient2d.orient2d_filter
 #   | left = (ax - cx) * (by - cy)
