@@ -131,8 +131,8 @@ def _binade(precision: int) -> Floats:
 
 
 def _cosines(precision: int) -> Floats:
-    some = _binade(precision)[::3]
-    return np.concatenate([-some, -0.25 * some, [0.0], 0.25 * some, some])
+    binade = _binade(precision)
+    return np.concatenate([-binade, -0.25 * binade, [0.0], 0.25 * binade, binade])
 
 
 def _bounds(precision: int) -> Floats:
@@ -144,7 +144,7 @@ def _none(_: int) -> Floats:
 
 
 SHAPES: dict[str, Shape] = {
-    "angle": Shape((beyond, angle_filter, corner_code), _angles, 8, lambda p: _binade(p)[::5], _cosines),
+    "angle": Shape((beyond, angle_filter, corner_code), _angles, 6, _binade, _cosines),
     "area": Shape((beyond, area_filter), _areas, 8, _bounds, _none),
     "length": Shape((beyond, length_filter), _lengths, 31, _bounds, _none),
 }
