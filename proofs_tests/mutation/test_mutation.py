@@ -9,6 +9,7 @@ import pytest
 
 pytest.importorskip("cosmic_ray", reason="mutation testing needs cosmic-ray: pip install '.[mutation]'")
 
+from coverage import CoverageData
 from proofs_tests.mutation.covering import Covering
 from proofs_tests.mutation.mutants import ROOT, Mutant, mutants_of, source_files
 from proofs_tests.mutation.survivors import Survivors, described
@@ -147,6 +148,18 @@ class TestCovering:
         lines = {self.mutant.file: {7: [""], 8: ["a/test_b.py::test_2"]}}
         covering = Covering(lines, {"a/test_b.py::test_1": 2.0, "a/test_b.py::test_2": 1.0})
         assert covering.tests(self.mutant) == ["a/test_b.py::test_2"]
+
+    @pytest.mark.parametrize("place", ["/here/kernel", "/venv/lib/python3.11/site-packages"])
+    def test_recorded_wherever_the_packages_lie(self, tmp_path: Path, place: str) -> None:
+        data = CoverageData(str(tmp_path / "coverage"))
+        data.set_context("a/test_b.py::test_1")
+        data.add_lines({f"{place}/exactkernel/types.py": [7], f"{place}/other/types.py": [8]})
+        data.write()
+        times = tmp_path / "times.xml"
+        times.write_text('<testsuite><testcase classname="a.test_b" name="test_1" time="2.0"/></testsuite>')
+        covering = Covering.recorded(tmp_path / "coverage", [times], source_files())
+        assert covering.tests(self.mutant) == ["a/test_b.py::test_1"]
+        assert dict(covering.lines[self.mutant.file]) == {7: ["a/test_b.py::test_1"]}
 
     def test_control_no_test(self) -> None:
         """A line that no test runs."""
