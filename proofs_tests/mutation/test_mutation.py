@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("cosmic_ray", reason="mutation testing needs cosmic-ray: pip install '.[mutation]'")
 
 from coverage import CoverageData
+from proofs_tests.mutation.campaign import Result
 from proofs_tests.mutation.covering import Covering
 from proofs_tests.mutation.mutants import ROOT, Mutant, mutants_of, source_files
 from proofs_tests.mutation.survivors import Survivors, described
@@ -130,6 +131,31 @@ class TestMutants:
         lines = {change[: arrow.start()] for change in changes for arrow in re.finditer(" -> ", change)}
         mutants = (mutant for file in source_files() for mutant in mutants_of(file) if mutant.before in lines)
         assert not listed - {described(mutant) for mutant in mutants}
+
+
+@pytest.mark.obligation("X1", "a listed reason that a test refutes is told", method="named cases")
+class TestSurvivors:
+    """A mutant that survives is explained by the lists, or not; one that is listed and killed refutes its reason."""
+
+    mutant = next(iter(mutants_of("kernel/exactkernel/types.py")))
+    other = next(iter(mutants_of("kernel/exactkernel/codes.py")))
+
+    def test_explained(self) -> None:
+        survivors = Survivors({described(self.mutant): "why"})
+        results = [Result(mutant, "survived", "") for mutant in (self.mutant, self.other)]
+        assert survivors.unexplained(results) == results[1:]
+        assert not survivors.refuted(results)
+
+    @pytest.mark.parametrize("outcome", ["killed", "timeout"])
+    def test_control_a_listed_mutant_that_is_killed(self, outcome: str) -> None:
+        """A reason of a mutant that a test kills."""
+        survivors = Survivors({described(self.mutant): "why"})
+        killed = Result(self.mutant, outcome, "a/test_b.py::test_1")
+        assert survivors.refuted([killed, Result(self.other, "killed", "")]) == [killed]
+
+    def test_another_place_of_the_same_words_may_be_killed(self) -> None:
+        survivors = Survivors({described(self.mutant): "why"})
+        assert not survivors.refuted([Result(self.mutant, outcome, "") for outcome in ("survived", "killed")])
 
 
 @pytest.mark.obligation("X1", "the tests of a mutant are those that run its line", method="named cases")
