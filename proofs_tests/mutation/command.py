@@ -47,7 +47,7 @@ def _run(
     processes: Annotated[int, typer.Option(min=1)] = 2,
     page_file: Annotated[Path | None, typer.Option("--page", help="write the page of docs/ there")] = None,
 ) -> None:
-    """Mutate, test, and tell what survived; exit code 1 below 95 percent."""
+    """Mutate, test, and tell what survived; exit code 1 below 95 percent, or if a mutant is killed that is listed."""
     mutants = [mutant for file in source_files() if _chosen(file, only) for mutant in mutants_of(file)]
     if sample is not None:
         mutants = _sampled(mutants, sample, seed)
@@ -86,7 +86,7 @@ def _sampled(mutants: list[Mutant], count: int, seed: str) -> list[Mutant]:
 
 
 def _tell(results: list[Result], page_file: Path | None) -> None:
-    """Print the score and what survived; leave with exit code 1 below the bar."""
+    """Print the score and what survived; leave with exit code 1 below the bar, or where a listed reason is wrong."""
     survivors = Survivors.listed()
     if page_file is not None:
         page_file.write_text(page(results, survivors), encoding="utf-8")
@@ -94,12 +94,15 @@ def _tell(results: list[Result], page_file: Path | None) -> None:
     unexplained = survivors.unexplained(results)
     for result in unexplained:
         print(f"{result.outcome}: {result.mutant.file}:{result.mutant.line} {described(result.mutant)}")
+    refuted = survivors.refuted(results)
+    for result in refuted:
+        print(f"listed, but {result.outcome} by {result.test}: {described(result.mutant)}")
     explained = len(alive) - len(unexplained)
     print(f"{len(results)} mutants: {len(results) - len(alive)} killed, {explained} known to be equivalent, ", end="")
     print(f"{len(unexplained)} survived")
     score = 1.0 - len(unexplained) / max(len(results) - explained, 1)
     print(f"score {score:.1%}; the bar is {BAR:.0%}")
-    raise typer.Exit(score < BAR)
+    raise typer.Exit(score < BAR or bool(refuted))
 
 
 def main() -> None:

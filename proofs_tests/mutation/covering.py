@@ -27,7 +27,7 @@ class Covering:
         data.read()
         lines: dict[str, dict[int, list[str]]] = {file: defaultdict(list) for file in files}
         for path in data.measured_files():
-            for file in (file for file in files if path.endswith(f"/{file}")):
+            for file in (file for file in files if path.endswith(_installed(file))):
                 for line, contexts in data.contexts_by_lineno(path).items():
                     lines[file][line] += contexts
         cases = [case for path in times for case in ElementTree.parse(path).iter("testcase")]
@@ -59,6 +59,11 @@ class Covering:
         """Quick tests first, and those that are about little else: they run lines of few files, this one among them."""
         files = self.touched.get(test, set())
         return (self.seconds[test] + 0.002) * (len(files) + 1) * (1 if mutant.file in files else 4)
+
+
+def _installed(file: str) -> str:
+    """Return how the path of a source file ends wherever it lies: in a checkout, or where pip has put the packages."""
+    return "/" + file.partition("/")[2]
 
 
 def _node(case: ElementTree.Element) -> str:

@@ -9,6 +9,8 @@ import pytest
 
 pytest.importorskip("cosmic_ray", reason="mutation testing needs cosmic-ray: pip install '.[mutation]'")
 
+from coverage import CoverageData
+from proofs_tests.mutation.campaign import Result
 from proofs_tests.mutation.covering import Covering
 from proofs_tests.mutation.mutants import ROOT, Mutant, mutants_of, source_files
 from proofs_tests.mutation.survivors import Survivors, described
@@ -131,6 +133,31 @@ class TestMutants:
         assert not listed - {described(mutant) for mutant in mutants}
 
 
+@pytest.mark.obligation("X1", "a listed reason that a test refutes is told", method="named cases")
+class TestSurvivors:
+    """A mutant that survives is explained by the lists, or not; one that is listed and killed refutes its reason."""
+
+    mutant = next(iter(mutants_of("kernel/exactkernel/types.py")))
+    other = next(iter(mutants_of("kernel/exactkernel/codes.py")))
+
+    def test_explained(self) -> None:
+        survivors = Survivors({described(self.mutant): "why"})
+        results = [Result(mutant, "survived", "") for mutant in (self.mutant, self.other)]
+        assert survivors.unexplained(results) == results[1:]
+        assert not survivors.refuted(results)
+
+    @pytest.mark.parametrize("outcome", ["killed", "timeout"])
+    def test_control_a_listed_mutant_that_is_killed(self, outcome: str) -> None:
+        """A reason of a mutant that a test kills."""
+        survivors = Survivors({described(self.mutant): "why"})
+        killed = Result(self.mutant, outcome, "a/test_b.py::test_1")
+        assert survivors.refuted([killed, Result(self.other, "killed", "")]) == [killed]
+
+    def test_another_place_of_the_same_words_may_be_killed(self) -> None:
+        survivors = Survivors({described(self.mutant): "why"})
+        assert not survivors.refuted([Result(self.mutant, outcome, "") for outcome in ("survived", "killed")])
+
+
 @pytest.mark.obligation("X1", "the tests of a mutant are those that run its line", method="named cases")
 class TestCovering:
     """A line's tests, those of a fixture's file, and for lines that run on import all tests of the file."""
@@ -147,6 +174,18 @@ class TestCovering:
         lines = {self.mutant.file: {7: [""], 8: ["a/test_b.py::test_2"]}}
         covering = Covering(lines, {"a/test_b.py::test_1": 2.0, "a/test_b.py::test_2": 1.0})
         assert covering.tests(self.mutant) == ["a/test_b.py::test_2"]
+
+    @pytest.mark.parametrize("place", ["/here/kernel", "/venv/lib/python3.11/site-packages"])
+    def test_recorded_wherever_the_packages_lie(self, tmp_path: Path, place: str) -> None:
+        data = CoverageData(str(tmp_path / "coverage"))
+        data.set_context("a/test_b.py::test_1")
+        data.add_lines({f"{place}/exactkernel/types.py": [7], f"{place}/other/types.py": [8]})
+        data.write()
+        times = tmp_path / "times.xml"
+        times.write_text('<testsuite><testcase classname="a.test_b" name="test_1" time="2.0"/></testsuite>')
+        covering = Covering.recorded(tmp_path / "coverage", [times], source_files())
+        assert covering.tests(self.mutant) == ["a/test_b.py::test_1"]
+        assert dict(covering.lines[self.mutant.file]) == {7: ["a/test_b.py::test_1"]}
 
     def test_control_no_test(self) -> None:
         """A line that no test runs."""

@@ -10,7 +10,7 @@ import pytest
 
 __all__ = ["MEASURED", "Figures", "Measured", "load", "update"]
 
-MEASURED = Path(__file__).resolve().parents[2] / "obligations.json"
+MEASURED = Path(__file__).resolve().parents[1] / "obligations.json"
 
 
 class Measured(NamedTuple):

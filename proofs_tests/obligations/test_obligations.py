@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from proofs_tests.obligations.markers import ROOT, MarkerError, Obligation, collect
-from proofs_tests.obligations.measured import Figures, load, update
+from proofs_tests.obligations.measured import MEASURED, Figures, load, update
 from proofs_tests.obligations.page import page
 from proofs_tests.obligations.statements import STATEMENTS
 
@@ -93,6 +93,9 @@ class TestPage:
         assert PAGE.read_text(encoding="utf-8") == page(OBLIGATIONS, load()), (
             "python -m proofs_tests.obligations > docs/obligations.md"
         )
+
+    def test_figures_are_read_where_the_page_has_them_written(self) -> None:
+        assert f"--record-obligations {MEASURED.relative_to(ROOT).as_posix()}`" in page(OBLIGATIONS, {})
 
     def test_figures_are_of_classes_that_there_are(self) -> None:
         assert set(load()) <= {o.place for o in OBLIGATIONS}
