@@ -269,7 +269,9 @@ def broken(c: Signs, o: Signs) -> dict[str, int]:
     }
 
 
-@pytest.mark.obligation("K8", "the shipped predicates obey the axioms (exhaustive on small grids)", method="exhaustive")
+@pytest.mark.obligation(
+    "K8", "the shipped predicates obey the axioms, on every tuple of small grids", method="enumeration"
+)
 class TestAxiomsOnGrids:
     """Every triple, quadruple and quintuple of small grids, degenerate ones included, whatever stage decides: the
     axioms of orientation, the antisymmetry of incircle, and a non-Delaunay edge is flippable."""
