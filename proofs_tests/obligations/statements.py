@@ -86,6 +86,7 @@ STATEMENTS = MappingProxyType(
         "S2": "blunders are found, and shrunk",
         "T1": "dictionaries are those of the package",
         "T2": "a string of switches is read whole or refused",
+        "T3": "where Triangle dies, hangs or is silent, there is a mesh, a warning or an error",
         "W1": "the examples in the documents run",
     }
 )
