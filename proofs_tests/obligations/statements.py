@@ -78,7 +78,7 @@ STATEMENTS = MappingProxyType(
         "G4": "arrays and statistics are those of naive definitions",
         "H1": "the seeds of the holes alone carve the same domain",
         "B1": "every planted fault is found within the default budget",
-        "B2": "a counterexample is as small as it can be, and shows the same again",
+        "B2": "nothing can be left out of a counterexample, and it shows the same again",
         "B3": "the known failures of other meshers are found",
         "B4": "whatever a mesher does to its process, the trial goes on",
         "B5": "in a test suite, what is asserted is what is verified",
