@@ -83,7 +83,7 @@ class TestRightMesh:
 
     @pytest.mark.parametrize("seed", range(12))
     def test_segments_through_one_point(self, seed: int) -> None:
-        """129 of 150 such calls went wrong with Triangle: errors, flat triangles, 18 hangs, 1 crash."""
+        """131 of 150 such calls went wrong with Triangle: 72 errors, 43 flat or inverted meshes, 16 hangs."""
         content = spokes(seed)
         found = triangulate(content, "pc")
         assert is_right(found, "covers_hull", "constrained_delaunay")
