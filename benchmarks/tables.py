@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.peers import PEERS, version_of
+from benchmarks.peers import PEERS, Mesher, version_of
 from benchmarks.workers import Outcome
 
 __all__ = ["Section", "cell", "machine"]
@@ -31,12 +31,18 @@ def machine() -> str:
     if cpuinfo.exists():
         found = re.search(r"model name\s*:\s*(.*)", cpuinfo.read_text())
         model = found.group(1).strip() if found else model
-    versions = ", ".join(f"{peer.name} {version_of(peer.package)}" for peer in PEERS.values())
+    versions = ", ".join(_name(peer) + " " + version_of(peer.package) for peer in PEERS.values())
     libraries = ", ".join(f"{name} {version_of(name)}" for name in ("numpy", "numba", "gmpy2"))
     return (
         f"{date.today().isoformat()}, {model}, {platform.system()}, Python {platform.python_version()}; "
         f"{versions}; {libraries}. One thread."
     )
+
+
+def _name(peer: Mesher) -> str:
+    """Return the mesher's name, and that of the package, whose version it is, if it is another."""
+    name = peer.name.lower()
+    return peer.name if name in peer.package or peer.package in name else f"{peer.name} ({peer.package})"
 
 
 class Section:

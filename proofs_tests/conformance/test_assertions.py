@@ -28,6 +28,9 @@ def meshes(triangles: list[tuple[int, int, int]]) -> list[object]:
     ]
 
 
+@pytest.mark.obligation(
+    "B5", "the assertions pass exactly what they are named for, from every package", method="named cases"
+)
 class TestAssertions:
     """Law: assert_delaunay passes exactly the Delaunay triangulations, from every package; likewise the others."""
 
@@ -38,6 +41,7 @@ class TestAssertions:
 
     @pytest.mark.parametrize("mesh", meshes(WRONG))
     def test_control_wrong_diagonal(self, mesh: object) -> None:
+        """The wrong diagonal."""
         assert_admissible(mesh)
         with pytest.raises(AssertionError, match="lies inside the circumcircle"):
             assert_delaunay(mesh)

@@ -159,6 +159,9 @@ def pytest_run(folder: Path, *arguments: str, script: Sequence[str] = ("-m", "py
     return run.returncode, run.stdout + run.stderr
 
 
+@pytest.mark.obligation(
+    "B5", "--mesher adds a test for each law; without it nothing is added or imported", method="named cases"
+)
 class TestPlugin:
     """Law: ``--mesher`` adds one test for each law, which fails where the law is broken; without it nothing is added
     and nothing of exactmesh is imported."""
@@ -207,6 +210,7 @@ class TestPlugin:
         assert code == 0
 
     def test_control_without_a_mesher_nothing_is_imported(self, tmp_path: Path) -> None:
+        """No mesher: nothing of exactmesh is imported."""
         tmp_path.joinpath("test_own.py").write_text(
             "import sys\ndef test_own():\n    assert not {'exactmesh', 'exactkernel', 'numba'} & set(sys.modules)\n"
         )

@@ -94,7 +94,7 @@ class TestPlantedFaults:
 
 @pytest.mark.obligation(
     "B2",
-    "what was found is told as the smallest input, which shows the same when it is tried again",
+    "what was found is told by a small input, which shows the same when it is tried again",
     method="named cases",
 )
 class TestCounterexamples:

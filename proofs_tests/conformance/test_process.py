@@ -313,6 +313,9 @@ class TestNames:
         assert retry("exactmesh", FEW.points, [(0, 1)]).ok  # control
 
 
+@pytest.mark.obligation(
+    "B2", "of what is left of an input no point and no segment can be left out", method="named cases"
+)
 class TestReduction:
     """Law: what is left of an input breaks the law still, and no single point or segment can be left out."""
 
@@ -338,6 +341,7 @@ class TestReduction:
         assert len(small.points) <= 4
 
     def test_control_nothing_is_left_out_of_what_is_needed(self) -> None:
+        """A fault that takes 25 points: 25 are left."""
         assert reduced(MANY, is_legal, lambda given: len(given.points) >= 25).size <= MANY.size
         assert len(reduced(MANY, is_legal, lambda given: len(given.points) >= 25).points) == 25
 

@@ -88,6 +88,9 @@ def drawn(strategy: st.SearchStrategy[T], count: int = 40) -> list[T]:
     return found
 
 
+@pytest.mark.obligation(
+    "S1", "every family draws finite doubles, as many as asked for, distinct where it says so", method="property-based"
+)
 class TestPoints:
     """Every family draws finite doubles, as many as it was asked for, and where it says so, distinct ones."""
 
@@ -109,6 +112,7 @@ class TestPoints:
             assert len(set(map(tuple, points.tolist()))) == len(points)
 
     def test_control_duplicates(self) -> None:
+        """The family of duplicates, which are not distinct."""
         for points in drawn(strategies.duplicate_points(min_size=2, max_size=60)):
             assert len(set(map(tuple, points.tolist()))) < len(points)
 
@@ -232,6 +236,9 @@ CATCHES: list[tuple[Family, Callable[[FloatArray], bool]]] = [
 ]
 
 
+@pytest.mark.obligation(
+    "S2", "each family catches the blunders that it is for within a hundred examples", method="property-based"
+)
 class TestCatches:
     """Each family catches the blunders that it is there for within a hundred examples, and so does the union of all;
     points spread evenly catch none of them, which is why the others are there."""
@@ -243,6 +250,8 @@ class TestCatches:
 
     @pytest.mark.parametrize("bug", dict.fromkeys(bug for _, bug in CATCHES), ids=name_of)
     def test_control_not_by_uniform_points(self, bug: Callable[[FloatArray], bool]) -> None:
+        """Points spread evenly: they catch none of them."""
+
         def scattered(points: FloatArray) -> bool:
             return bool((points % 1).any()) and bug(points)  # no integers: those are for shrinking
 
@@ -253,6 +262,7 @@ SQUARE = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
 DIAMOND = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
 
 
+@pytest.mark.obligation("S2", "what fails shrinks to the fewest points there are", method="property-based")
 class TestShrinking:
     """What fails shrinks to the fewest points there are, with the simplest coordinates of their family."""
 
@@ -288,6 +298,7 @@ class TestShrinking:
         assert len(found) <= 5
 
     def test_control_there_is_no_such_thing(self) -> None:
+        """A fault that a family has not: nothing is found."""
         with pytest.raises(NoSuchExample):
             find(strategies.uniform_points(max_size=12), two_at_one_place, settings=quiet)
 
@@ -319,6 +330,11 @@ def meetings(graph: PSLG) -> list[tuple[int, int]]:
     ]
 
 
+@pytest.mark.obligation(
+    "S1",
+    "every family of graphs is planar, and bounds a domain, but for the one that is for crossings",
+    method="property-based",
+)
 class TestGraphs:
     """Every family draws graphs of as many points as it was asked for: planar unless crossings are what it is for, and
     bounding a domain that can be triangulated."""
@@ -359,6 +375,8 @@ class TestGraphs:
         check()
 
     def test_control_bundles_cross(self) -> None:
+        """The family whose segments cross."""
+
         @quiet
         @given(strategies.near_concurrent(min_size=6))
         def check(graph: PSLG) -> None:

@@ -76,6 +76,7 @@ class TestTriangulations:
         assert (mesh.points.tolist(), rows_of(mesh)) == ([[0, 0], [2, 0], [0, 2]], [(2, 0, 1)])
 
 
+@pytest.mark.obligation("S1", "each corruption breaks what it says", method="property-based")
 class TestCorruptions:
     """Each corruption breaks what it says, can be placed where there is room for it, and changes nothing that it was
     given."""
@@ -106,6 +107,7 @@ class TestCorruptions:
         assert verify(swapped.points, swapped.triangles).ok
 
     def test_control_a_sound_mesh_has_no_fault(self) -> None:
+        """A sound mesh: no corruption is seen in it."""
         report = verify(*SQUARE)
         assert report.ok
         assert all(reason_faults(kind, report) for kind in Corruption if kind.breaks in report.findings)

@@ -44,6 +44,11 @@ def area(points: npt.NDArray[np.float64], corners: list[int]) -> Fraction:
     return ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) / 2
 
 
+@pytest.mark.obligation(
+    "T1",
+    "keys, their order, types and shapes are those that the package returned, for every switch",
+    method="differential",
+)
 class TestContract:
     """For every switch, the keys, their order, the types and the shapes are those that the package returned."""
 
@@ -55,6 +60,7 @@ class TestContract:
         assert all(array.flags.owndata and array.flags.writeable for array in arrays.values())
 
     def test_control_other_shapes_are_told_apart(self) -> None:
+        """Another type, another shape, another order of keys."""
         found = {key: np.asarray(array) for key, array in quiet(SQUARE, "e").items()}
         expected = CONTRACT["square"]["e"]
         for key, other in (("edges", found["edges"].astype(np.int64)), ("edge_markers", np.zeros((5, 2), np.int32))):

@@ -63,6 +63,9 @@ SIX: dict[str, object] = {
 }  # fmt: skip
 
 
+@pytest.mark.obligation(
+    "T3", "where Triangle fails and it is clear what is meant, here is the mesh", method="named cases"
+)
 class TestRightMesh:
     """What is meant is clear: here is the mesh of it."""
 
@@ -70,13 +73,17 @@ class TestRightMesh:
     def test_six_points(self, switches: str) -> None:
         found = triangulate(SIX, switches)
         assert is_right(found, *(["covers_hull"] if switches == "pc" else []))  # later, points on the hull are rounded
+
+    def test_control_an_inverted_triangle(self) -> None:
+        """An inverted triangle, as Triangle has them."""
+        found = triangulate(SIX, "pc")
         wrong = found["triangles"].copy()
         wrong[0] = wrong[0, ::-1]
-        assert not is_right({**found, "triangles": wrong})  # control: an inverted triangle, as Triangle has them
+        assert not is_right({**found, "triangles": wrong})
 
     @pytest.mark.parametrize("seed", range(12))
     def test_segments_through_one_point(self, seed: int) -> None:
-        """129 of 150 such calls went wrong with Triangle: errors, flat triangles, 18 hangs, 1 crash."""
+        """Most such calls go wrong with Triangle: errors, flat and inverted triangles, hangs; see docs/triangle.md."""
         content = spokes(seed)
         found = triangulate(content, "pc")
         assert is_right(found, "covers_hull", "constrained_delaunay")
@@ -111,6 +118,7 @@ class TestRightMesh:
         assert found["segment_markers"].tolist() == [[-(2**31)], [2**31 - 1], [1], [-1]]
 
 
+@pytest.mark.obligation("T3", "what Triangle passes over is named by a warning", method="named cases")
 class TestPassedOver:
     """What Triangle passes over without a word is passed over with a warning that names it."""
 
@@ -132,6 +140,12 @@ class TestPassedOver:
         with pytest.warns(TriangleWarning) as caught:
             triangulate({**COURSE, "holes": [(9.0, 9.0), (0.6, 0.6)]}, "p")
         assert [str(warning.message).split(" at")[0] for warning in caught] == ["hole 0", "hole 1"]
+
+    def test_control_nothing_to_pass_over(self) -> None:
+        """None: the same input without the fault gives no warning."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            assert is_right(triangulate(COURSE, "p"))
 
     def test_segments_without_length(self) -> None:
         self.warned(
@@ -159,6 +173,7 @@ class TestPassedOver:
             triangulate(HALVES, "pq30YY")
 
 
+@pytest.mark.obligation("T3", "what is not clear is refused, and the culprit named", method="named cases")
 class TestErrors:
     """What is meant is not clear: an error names the culprit."""
 
@@ -170,8 +185,18 @@ class TestErrors:
             triangulate({**COURSE, "vertices": [*COURSE["vertices"], (0.1, bad)]}, switches)
         assert list(caught.value.indices) == [5]
 
+    def test_control_without_the_fault(self) -> None:
+        """None: the same input without the fault is taken."""
+        for content, switches in (
+            (COURSE, "p"),
+            (COURSE, "pq"),
+            (SQUARE, ""),
+            ({**SQUARE, "triangles": [(0, 1, 2), (0, 2, 3)]}, "r"),
+        ):
+            assert len(triangulate(content, switches)["triangles"]) > 1
+
     def test_segment_out_of_range(self) -> None:
-        """No triangles, and no error."""
+        """No error, and with an open outline no triangles."""
         for bad in ((0, 99), (-1, 2)):
             with pytest.raises(PSLGError) as caught:
                 triangulate({**COURSE, "segments": [*COURSE["segments"], bad], "segment_markers": None}, "p")
@@ -286,6 +311,7 @@ SWITCHES = st.tuples(
 ).map(lambda parts: "".join(parts) + "S9")
 
 
+@pytest.mark.obligation("T3", "whatever is in a dictionary: a mesh or a typed error", method="property-based")
 class TestAlwaysAnswers:
     """Whatever is in a dictionary: a mesh of counterclockwise triangles, or an error of the library's."""
 
@@ -299,3 +325,9 @@ class TestAlwaysAnswers:
             except ExactMeshError:
                 return
         assert verify(found["vertices"], found["triangles"][:, :3], claims=["orientation", "admissible"]).ok
+
+    def test_control_another_mesh(self) -> None:
+        """A triangle listed twice."""
+        found = triangulate(SQUARE, "")
+        twice = found["triangles"][[0, 0]]
+        assert not verify(found["vertices"], twice, claims=["orientation", "admissible"]).ok

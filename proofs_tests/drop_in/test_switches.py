@@ -61,6 +61,7 @@ STRINGS = st.one_of(
 )
 
 
+@pytest.mark.obligation("T2", "a string of switches is read whole, by its grammar, or refused", method="property-based")
 class TestGrammar:
     """A string is read as its grammar says, letter by letter, or it is refused; nothing in it is skipped."""
 
@@ -92,7 +93,7 @@ class TestGrammar:
 
     @pytest.mark.parametrize("text", ["a1e-3", "a-1", "q30 a 0.1", "pxq", "a0,1"])
     def test_control_triangle_reads_more(self, text: str) -> None:
-        """The rule by which Triangle reads accepts what has no meaning: a reader like that would fail above."""
+        """Triangle's own reading, which takes what has no meaning."""
         assert list(read_as_triangle_does(text))
         assert read_naively(text) is None
 

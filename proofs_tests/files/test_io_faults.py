@@ -41,6 +41,7 @@ def fault(path: Path) -> FileFormatError:
     return caught.value
 
 
+@pytest.mark.obligation("P5", "one content in many texts is one mesh", method="named cases")
 class TestWhatIsRead:
     """Comments, blank lines, missing header fields, either base, either line end: the content is the same."""
 
@@ -70,6 +71,7 @@ class TestWhatIsRead:
         assert mesh.base == (0 if "\n3 0 1" in node else 1)
 
     def test_control_another_content_is_another_mesh(self, tmp_path: Path) -> None:
+        """A coordinate more for each point announced as an attribute."""
         mesh = read_points(put(tmp_path, node=NODE.replace("4 0 1", "4 0 2")).with_suffix(".node"))
         assert mesh.points.tolist() != [[0, 0], [1, 0], [1, 1], [0, 1]]
 
@@ -243,6 +245,7 @@ class TestTheFaultIsNamed:
         assert "box.ele, which is not there" in str(fault(stem.with_suffix(".node")))
 
 
+@pytest.mark.obligation("P5", "a header that promises 10^15 rows costs no memory", method="named cases")
 class TestNothingIsAllocatedOnTheWordOfAHeader:
     """A header that announces 10^15 rows or attributes costs no more memory than the file has content."""
 
@@ -278,6 +281,8 @@ class TestNothingIsAllocatedOnTheWordOfAHeader:
         assert self.peak(lambda: read(path)) < 1 << 20
 
     def test_control_a_trusting_reader_is_caught(self) -> None:
+        """A reader that allocates first."""
+
         def trusting() -> None:
             np.zeros((1 << 20, 2))
             raise ExactMeshError("too late")
@@ -329,6 +334,7 @@ def archive() -> bytes:
     return stream.getvalue()
 
 
+@pytest.mark.obligation("P5", "a mutated mesh file is read, or refused by a typed error", method="property-based")
 class TestFuzz:
     """Whatever happens to a good file, reading it returns a Mesh or raises an ExactMeshError; nothing else."""
 
@@ -351,6 +357,7 @@ class TestFuzz:
         assert self.survives(read, path)
 
     def test_control_numpy_alone_does_not_survive(self, tmp_path: Path) -> None:
+        """numpy's own reader, whose errors have no type of ours."""
         path = put(tmp_path, node=NODE.replace("-1e3", "-1d3")).with_suffix(".node")
         assert not self.survives(lambda path: np.loadtxt(path, skiprows=1), path)
         assert self.survives(read, path)
@@ -400,6 +407,7 @@ class TestArchives:
         assert "no readable .npz archive" in str(fault(tmp_path / "m.npz"))
 
 
+@pytest.mark.obligation("P6", "a write that fails leaves the old files as they were", method="named cases")
 class TestWholeOrNotAtAll:
     """A write that fails leaves the old files as they were, and nothing beside them."""
 
@@ -430,6 +438,7 @@ class TestWholeOrNotAtAll:
         assert read(tmp_path / "a.npz").points.tolist() == [[0, 1]]
 
     def test_control_writing_in_place_is_caught(self, tmp_path: Path) -> None:
+        """A file that is written in place."""
         path = tmp_path / "a"
         path.write_text("old")
         with pytest.raises(OSError, match="disk full"), path.open("w"):

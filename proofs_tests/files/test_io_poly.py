@@ -301,6 +301,9 @@ def naive(text: str) -> tuple[list[list[float]], ...]:
     return tuple(sections)
 
 
+@pytest.mark.obligation(
+    "P5", "a mutated graph file is read for what it says, or refused by a typed error", method="property-based"
+)
 class TestFuzz:
     """A mutated file is refused with an ExactMeshError, or read for what it then says; it is never anything else."""
 
@@ -344,6 +347,7 @@ class TestFuzz:
         assert self.agrees(put(tmp_path, text), text)
 
     def test_control_a_reader_that_looks_away_is_caught(self, tmp_path: Path) -> None:
+        """An end of a segment, and a region's attribute, other than in the text."""
         path = put(tmp_path, LAKE)
         assert self.agrees(path, LAKE)
         assert not self.agrees(path, LAKE.replace("2 2 3 0", "2 2 4 0"))

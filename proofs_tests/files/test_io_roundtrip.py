@@ -98,6 +98,9 @@ def fresh(folder: Path, suffix: str) -> Path:
     return folder / f"m{suffix}"
 
 
+@pytest.mark.obligation(
+    "P6", "read(write(mesh)) is the mesh, in every format that can hold it", method="property-based"
+)
 class TestRoundTrip:
     """read(write(mesh)) = mesh, exactly, in every format that can hold the mesh."""
 
@@ -146,12 +149,14 @@ class TestRoundTrip:
         assert same(read(tmp_path / "m.node"), mesh)
 
     def test_control_fifteen_digits_are_caught(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Numbers written with fifteen digits."""
         mesh = Mesh([(0.1 + 0.2, 1 / 3)])
         monkeypatch.setattr(text_module, "_FLOAT", "%.15g")
         write(tmp_path / "m.node", mesh)
         assert not same(read(tmp_path / "m.node"), mesh)
 
     def test_control_a_lost_sign_of_zero_is_caught(self) -> None:
+        """The sign of a zero lost, and another base."""
         assert not same(Mesh([(0.0, 1.0)]), Mesh([(-0.0, 1.0)]))
         assert not same(Mesh([(0.0, 1.0)]), Mesh([(0.0, 1.0)], base=1))
 
@@ -218,6 +223,7 @@ def is_nearest(text: str, value: float) -> bool:
     return True
 
 
+@pytest.mark.obligation("P6", "a decimal is read as the nearest double, ties to even", method="property-based")
 class TestDecimalsAreRoundedToNearest:
     """The number read is the double nearest to the decimal in the file, ties to even; by exact fractions."""
 
@@ -231,6 +237,7 @@ class TestDecimalsAreRoundedToNearest:
         assert is_nearest(y, float(point[1]))
 
     def test_control_the_neighbouring_double_is_rejected(self) -> None:
+        """The double beside the nearest one, and a tie to odd."""
         assert is_nearest("0.1", 0.1)
         assert not is_nearest("0.1", math.nextafter(0.1, 1))
         assert not is_nearest("9007199254740993", 9007199254740994.0)

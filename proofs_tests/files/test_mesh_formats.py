@@ -65,6 +65,9 @@ def written(folder: Path, name: str, points: npt.NDArray[np.float64], cells: Cel
     return path
 
 
+@pytest.mark.obligation(
+    "P6", "what meshio writes is read as the same mesh, and verified the same", method="named cases"
+)
 class TestRoundTrips:
     """What meshio writes and exactmesh reads is the same mesh, number by number; so is its report."""
 
@@ -98,6 +101,7 @@ class TestRoundTrips:
         assert verify(path).verdict(Property.SEGMENTS_PRESENT) is Verdict.FAILS
 
     def test_control_a_fault_survives(self, tmp_path: Path) -> None:
+        """A triangle written twice: its report says so."""
         for name in ("gmsh 2.2", "VTU", "OBJ"):
             rows = np.concatenate([MESH.triangles, MESH.triangles[:1]])
             path = written(tmp_path, name, SPACE, [("triangle", rows)])

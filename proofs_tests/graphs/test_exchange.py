@@ -136,6 +136,7 @@ class TestKindsOfGeometry:
             assert read == expected
 
 
+@pytest.mark.obligation("P3", "a line beside polygons separates nothing", method="named cases")
 class TestLinesBesidePolygons:
     """A line separates nothing: beside polygons, the domain is theirs, and the line is edges where it is inside."""
 
@@ -161,12 +162,14 @@ class TestLinesBesidePolygons:
         assert kept.covers(line.intersection(self.polygon))
 
     def test_control_a_line_given_once_has_no_parity(self) -> None:
+        """A line given once: its sides have no parity."""
         pslg = PSLG.from_shapely([self.polygon, self.lines[0]])
         once = PSLG(pslg.points, pslg.segments[:-2], rule="even-odd")
         with pytest.raises(PSLGError, match="an odd number"):
             constrained_delaunay(once)
 
     def test_control_a_closed_line_given_once_would_be_a_hole(self) -> None:
+        """A closed line given once: it is a hole."""
         pslg = PSLG.from_shapely([self.polygon, self.lines[1]])
         once = PSLG(pslg.points, pslg.segments[:-3], rule="even-odd")
         assert once.to_shapely().area == 81 - 4 - 2
@@ -306,6 +309,9 @@ def area_by_parity(rings: list[Ring], holes: list[Point]) -> Fraction:
     return Fraction(sum(sum(cover(*cell)) % 2 == 1 and cover(*cell) not in carved for cell in cells))
 
 
+@pytest.mark.obligation(
+    "P3", "GeoJSON nests rings, and shapely's polygon is the domain, by counting rings", method="property-based"
+)
 class TestDomains:
     """GeoJSON nests rings, and shapely's polygon is the domain, as counting rings around unit cells has it."""
 
@@ -345,6 +351,7 @@ class TestDomains:
         assert set(map(tuple, shapely.get_coordinates(domain))) == set(itertools.chain(*rings))
 
     def test_control_a_domain_without_nesting_is_caught(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Rings that are never within others."""
         rings = [square(0, 0, 9), square(1, 1, 2)]
         monkeypatch.setattr(geojson_module, "_is_within", lambda *_: False)
         polygons = shapely.get_parts(shapely.from_geojson(PSLG.from_rings(rings).to_geojson()))
@@ -359,6 +366,7 @@ def json_values() -> st.SearchStrategy[object]:
     return st.recursive(leaves, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(keys, inner, max_size=3))
 
 
+@pytest.mark.obligation("P5", "whatever the GeoJSON, a graph or a typed error comes of it", method="property-based")
 class TestFuzz:
     """Whatever the text or the object, the outcome is a PSLG or an ExactMeshError."""
 
@@ -389,6 +397,7 @@ class TestFuzz:
         self.survives(self.good[:start] + insert + self.good[start + cut :])
 
     def test_control_another_error_would_be_noticed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A reader that raises a TypeError."""
         assert not self.survives(self.good)
         assert self.survives("nonsense")
         monkeypatch.setattr(geojson_module, "_positions", None)

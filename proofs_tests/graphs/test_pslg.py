@@ -132,6 +132,9 @@ class TestEveryFaultIsFound:
         assert found_faults(lambda: PSLG(points, segments, holes=holes)) == whole
 
 
+@pytest.mark.obligation(
+    "P1", "one error has every fault, and its message names the first of each kind", method="named cases"
+)
 class TestAllAtOnce:
     """One error has every fault of every kind; its message is one line that names the first of each and a remedy."""
 
@@ -167,6 +170,7 @@ class TestAllAtOnce:
         assert len(caught.value.faults) == 10
 
     def test_control_without_faults(self) -> None:
+        """None: the same graph without its faults is taken."""
         pslg = PSLG([*SQUARE, (4.0, 3.0)], SIDES, holes=[(1, 1)], regions=[(1, 2, 5)])
         assert pslg.regions.tolist() == [[1, 2, 5, -1]]
 
@@ -266,6 +270,7 @@ class TestDuplicates:
         assert first_of_each(points, np.argsort(points[:, 0], kind="stable").astype(np.int32)).tolist() != [0, 1, 0]
 
 
+@pytest.mark.obligation("G2", "a graph is kept as it was given, and cannot be changed", method="named cases")
 class TestKeptAsGiven:
     """Every array is kept, number by number, in its order; and nobody can change it, nor its copies and pickles."""
 
@@ -331,6 +336,7 @@ class TestKeptAsGiven:
         ],
     )
     def test_control_another_content_is_unequal(self, change: dict[str, object]) -> None:
+        """Another number in one array: the graphs are unequal."""
         assert dataclasses.replace(self.full, **change) != self.full  # type: ignore[arg-type]  # tables are of objects
         assert self.full != "PSLG"
 

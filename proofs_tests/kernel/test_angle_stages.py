@@ -185,7 +185,7 @@ class TestStages:
 
 @interpreted
 @pytest.mark.obligation(
-    "K7", "one corner is enough, and the latest stage that was needed is tallied", method="exhaustive"
+    "K7", "one corner is enough, and the latest stage that was needed is tallied", method="enumeration"
 )
 class TestCorners:
     """For all answers of the three corners: they are asked in turn until one has the wanted sign."""

@@ -17,7 +17,7 @@ import sympy
 import z3
 from proofs_tests.kernel.oracle import parity
 
-from exactkernel import incircle_batch, orient2d_batch
+from exactkernel import Stage, incircle_batch, incircle_staged, orient2d_batch, orient2d_staged
 
 Number: TypeAlias = Any  # sympy's and z3's expressions have no common type
 Vector: TypeAlias = tuple[Number, Number]
@@ -269,7 +269,9 @@ def broken(c: Signs, o: Signs) -> dict[str, int]:
     }
 
 
-@pytest.mark.obligation("K8", "the shipped predicates obey the axioms (exhaustive on small grids)", method="exhaustive")
+@pytest.mark.obligation(
+    "K8", "the shipped predicates obey the axioms, on every tuple of small grids", method="enumeration"
+)
 class TestAxiomsOnGrids:
     """Every triple, quadruple and quintuple of small grids, degenerate ones included, whatever stage decides: the
     axioms of orientation, the antisymmetry of incircle, and a non-Delaunay edge is flippable."""
@@ -285,6 +287,15 @@ class TestAxiomsOnGrids:
         points = GRIDS[name]
         record_property("cases", len(points) ** 4)
         assert not any(broken(circles(points), orientations(points)).values())
+
+    def test_every_stage_is_reached(self) -> None:
+        """The grid stage too, which single calls of orient2d do not know of."""
+        triples = [stage for p in GRIDS.values() for _, stage in map(orient2d_staged, *all_tuples(p, 3))]
+        fours = [
+            stage for p in GRIDS.values() for _, stage in map(incircle_staged, *(v[::7] for v in all_tuples(p, 4)))
+        ]
+        assert set(triples) == set(Stage) - {Stage.GRID}
+        assert set(fours) == set(Stage)
 
     def test_signs_of_the_determinants(self) -> None:
         """On integers, the shipped signs are those of the polynomials that the proofs are about, in integers."""

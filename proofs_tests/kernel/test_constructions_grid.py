@@ -28,7 +28,7 @@ def common_points(a: RationalPoint, b: RationalPoint, c: RationalPoint, d: Ratio
     return [(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))]
 
 
-@pytest.mark.obligation("K7", "constructions are exact for every input on the 3 x 3 grid", method="exhaustive")
+@pytest.mark.obligation("K7", "constructions are exact for every input on the 3 x 3 grid", method="enumeration")
 class TestGrid:
     """Circumcentres are as far from each corner; crossings are the one common point, or a typed error says why not."""
 

@@ -28,7 +28,7 @@ def compiled(points: Sequence[Cell], k: Context) -> int:
 
 
 @pytest.mark.obligation(
-    "K9", "perturbed incircle has the sign of its definition", method="exhaustive", control_in="mutants"
+    "K9", "perturbed incircle has the sign of its definition", method="enumeration", control_in="mutants"
 )
 class TestDefinition:
     """Every four of seven points of a square, in every order: the sign is that of the lifted determinant, which changes

@@ -64,7 +64,7 @@ def cells(n: int) -> Iterator[list[tuple[int, int]]]:
 
 
 @pytest.mark.obligation(
-    "K7", "a filter certifies exactly what exceeds its bound", method="exhaustive", control_in="mutants"
+    "K7", "a filter certifies exactly what exceeds its bound", method="enumeration", control_in="mutants"
 )
 class TestFilterBorder:
     """On small integers, where nothing rounds: the sign where |sum of terms| > bound * sum of |terms|, else 0.
@@ -100,7 +100,7 @@ class TestFilterBorder:
         record_property("cases", cases)
 
 
-@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="exhaustive", control_in="mutants")
+@pytest.mark.obligation("K6", "the grid stage is exact by itself", method="enumeration", control_in="mutants")
 class TestGridAlone:
     """With bounds so blunt that the filters certify nothing, the grid stage decides all small integers, exactly; and
     where it does not know of the grid, incircle finds it, and the others do without."""
@@ -176,7 +176,7 @@ class TestEveryCoordinateIsGuarded:
 
 
 @pytest.mark.obligation(
-    "K6", "a common grid is used exactly where there is one", method="exhaustive", control_in="mutants"
+    "K6", "a common grid is used exactly where there is one", method="enumeration", control_in="mutants"
 )
 class TestGridOfFour:
     """Without a context, the grid stage of incircle answers exactly what the filter does not, where all differences

@@ -117,6 +117,9 @@ def error_of(call: Callable[[], object]) -> ExactMeshError | None:
     return None
 
 
+@pytest.mark.obligation(
+    "G1", "every function that takes points refuses the same ones, with the same indices", method="named cases"
+)
 class TestPoints:
     """Every function that takes points refuses the same ones, for the same reason, with the same indices."""
 

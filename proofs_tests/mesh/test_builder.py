@@ -373,6 +373,7 @@ BAD_POINTS: list[object] = [
 BAD_VERTICES: list[object] = [-1, 9, 10**30, 1.0, "0", None, np.float64(1)]
 
 
+@pytest.mark.obligation("G1", "what a builder cannot take is named, and changes nothing", method="named cases")
 class TestBadInput:
     """What is no point, no vertex, or a crossing raises an error that says so, and the builder is what it was."""
 
@@ -429,6 +430,7 @@ class TestBadInput:
             TriangulationBuilder([(0, 1, 2)])
 
     def test_control_a_change_would_be_noticed(self) -> None:
+        """A point that was inserted."""
         builder = self.builder()
         builder.insert_point(1, 3)
         assert not self.unchanged(builder)

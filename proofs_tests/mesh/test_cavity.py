@@ -246,6 +246,7 @@ class TestGrowthOfSearch:
     """The count sees what it should: by search alone the work a vertex doubles with the number of vertices."""
 
     def test_control_search_is_quadratic(self) -> None:
+        """Cavities filled by search alone: the work a vertex doubles with the number of vertices."""
         child = subprocess.run(
             [sys.executable, "-c", SEARCH_ONLY],
             env={**os.environ, "NUMBA_DISABLE_JIT": "1"},

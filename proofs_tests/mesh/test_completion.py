@@ -94,6 +94,7 @@ QUERIES: list[Point] = [(x / 2, y / 2) for x in range(-1, 14) for y in range(-1,
 
 
 @pytest.mark.bounds
+@pytest.mark.obligation("G3", "so it does in holes, bays and slots, and between pieces", method="property-based")
 class TestLocate:
     """A point is in the closure of the triangle that locate names; -1 means that it is in none: in a hole, in a bay, in
     the slot of a pinch, between two pieces, or outside of all."""
@@ -145,6 +146,7 @@ class TestLocate:
 
     @pytest.mark.parametrize("name", ["U", "hole", "two pieces"])
     def test_control_a_walk_that_ends_at_the_boundary_is_wrong(self, name: str) -> None:
+        """A walk that ends at the boundary."""
         mesh = DOMAINS[name]
         found = locate_points(mesh.points, mesh.triangles, mesh.neighbors, np.array(QUERIES))
         assert misplaced(mesh, QUERIES, found.tolist())
@@ -192,6 +194,7 @@ def check_rings(mesh: Triangulation) -> None:
             assert turn == expected[start:] + expected[:start]
 
 
+@pytest.mark.obligation("M1", "the quad-edge of any domain is that of its drawing", method="named cases")
 class TestQuadEdge:
     """The quad-edge of any domain is that of its drawing: at each vertex one ring, in the order of the directions."""
 
@@ -201,6 +204,7 @@ class TestQuadEdge:
 
     @pytest.mark.parametrize("name", ["hourglass", "pinwheel", "holes that touch"])
     def test_control_without_coordinates_it_is_not_known(self, name: str) -> None:
+        """The triangles without their coordinates: pinched vertices have no order."""
         with pytest.raises(TopologyError, match="pinched"):
             QuadEdge.from_triangles(DOMAINS[name].triangles)
 

@@ -49,7 +49,10 @@ class Planes:
 
 
 @pytest.mark.obligation(
-    "M5", "an edge between two vertices is found, or which of them has fewer", method="exhaustive", control_in="mutants"
+    "M5",
+    "an edge between two vertices is found, or which of them has fewer",
+    method="enumeration",
+    control_in="mutants",
 )
 @pytest.mark.parametrize("name", SETS)
 class TestEdgesAreFound:
@@ -175,7 +178,7 @@ class TestPieces:
 @pytest.mark.obligation(
     "M5",
     "overlaps that do not fit into the memory are refused, and no others",
-    method="enumeration",
+    method="named cases",
     control_in="mutants",
 )
 class TestMemory:
@@ -220,7 +223,7 @@ class TestMemory:
 
 
 @pytest.mark.obligation(
-    "M5", "progress counts points, then segments, up to all", method="enumeration", control_in="mutants"
+    "M5", "progress counts points, then segments, up to all", method="named cases", control_in="mutants"
 )
 class TestProgress:
     """After each piece of work the number of points and segments that are done is told, and how many there are."""

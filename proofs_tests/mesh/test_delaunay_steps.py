@@ -36,7 +36,7 @@ CORNERS = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
 
 
 @pytest.mark.obligation(
-    "M4", "the first triangle is that of the first vertices that span one", method="exhaustive", control_in="mutants"
+    "M4", "the first triangle is that of the first vertices that span one", method="enumeration", control_in="mutants"
 )
 class TestTheFirstTriangle:
     """second_position and first_turn find what a search from the start finds, in any part of the points; the triangle
@@ -140,7 +140,7 @@ STARTS: dict[str, list[Pair]] = {
 
 
 @inlined
-@pytest.mark.obligation("M4", "the walk ends where the point is, wherever it starts", method="exhaustive")
+@pytest.mark.obligation("M4", "the walk ends where the point is, wherever it starts", method="enumeration")
 @pytest.mark.parametrize("name", STARTS)
 class TestLocate:
     """From every edge without a ghost end the walk to any point ends at an edge e such that the point is at the origin
@@ -207,7 +207,7 @@ class TestLocate:
 @pytest.mark.obligation(
     "M4",
     "a point is in conflict with a triangle just when it is in its disk",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 class TestInConflict:
@@ -237,7 +237,7 @@ class TestInConflict:
 @pytest.mark.obligation(
     "M4",
     "after each insertion: Delaunay, three edges more, degree - 3 flips",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 @pytest.mark.parametrize("name", STARTS)
@@ -298,7 +298,7 @@ class TestOneInsertion:
 @pytest.mark.obligation(
     "M4",
     "vertices are numbered as their points come; of equal ones the first",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 class TestNumbers:

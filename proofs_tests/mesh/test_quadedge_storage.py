@@ -17,7 +17,7 @@ INT32 = range(-(2**31), 2**31)
 
 
 @pytest.mark.obligation(
-    "M1", "an edge keeps its four labels, whatever else is made or deleted", method="exhaustive", control_in="mutants"
+    "M1", "an edge keeps its four labels, whatever else is made or deleted", method="named cases", control_in="mutants"
 )
 class TestLabels:
     """Every int32 is a label, and no other integer; each edge keeps its two vertices and two faces while others are
@@ -112,7 +112,7 @@ def three_edges() -> QuadEdge:
 
 
 @pytest.mark.obligation(
-    "M1", "an edge that is none of the quad-edge's is refused by name", method="exhaustive", control_in="mutants"
+    "M1", "an edge that is none of the quad-edge's is refused by name", method="named cases", control_in="mutants"
 )
 class TestStrangers:
     """Whatever quarter-edge is asked for, it is there or the error names its edge; so with edges of other quad-edges,
@@ -202,7 +202,7 @@ class TestMissingQuarters:
 
 
 @pytest.mark.obligation(
-    "M1", "arrays of wrong lengths are refused by their lengths", method="exhaustive", control_in="mutants"
+    "M1", "arrays of wrong lengths are refused by their lengths", method="enumeration", control_in="mutants"
 )
 class TestLengths:
     """A ring of k entries is taken just when 4 divides k and there are k / 2 vertices and faces."""

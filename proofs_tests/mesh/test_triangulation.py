@@ -60,6 +60,12 @@ def triangles_of(mesh: Triangulation) -> list[Triangle]:
     return [(a, b, c) for a, b, c in mesh.triangles.tolist()]
 
 
+@pytest.mark.obligation(
+    "G4",
+    "neighbors, edges, hull and statistics are those of naive definitions",
+    method="differential",
+    control_in="TestStatisticsCanFail",
+)
 @pytest.mark.bounds
 @EACH
 class TestArrays:
@@ -132,6 +138,7 @@ def is_close(figure: float, exact: Fraction, error: Fraction) -> bool:
     return abs(Fraction(figure) - exact) <= error + Fraction(2) ** -1074
 
 
+@pytest.mark.obligation("G4", "the smallest angle is right to 2^-20, however thin the triangle", method="named cases")
 class TestNeedles:
     """The smallest angle is relatively right to 2^-20 where short sides are exact: no needle has an angle of 0."""
 
@@ -143,6 +150,7 @@ class TestNeedles:
         assert math.isclose(mesh.statistics().smallest_angle, smallest, rel_tol=2.0**-20)
 
     def test_control_from_the_long_sides_it_is_lost(self) -> None:
+        """The area computed from the long sides: it is 0."""
         mesh = constrained_delaunay(lake(), crossings="split")
         a, b, c = mesh.points[mesh.triangles].transpose(1, 0, 2)
         sides = np.stack([c - b, a - c, b - a])
@@ -160,6 +168,7 @@ class TestStatisticsCanFail:
     """The comparison with exact figures rejects other ones."""
 
     def test_control_close(self) -> None:
+        """Figures that are off by more than their error."""
         assert not is_close(0.0, Fraction(1), Fraction(1, 2))
         assert not is_close(1.0001, Fraction(1), Fraction(1, 2**30))
         assert not is_close(math.inf, Fraction(1), Fraction(1))
@@ -181,6 +190,9 @@ COPIES: dict[str, Callable[[Triangulation], Triangulation]] = {
 }
 
 
+@pytest.mark.obligation(
+    "G2", "no array of a result can be written to, nor its base, nor an attribute replaced", method="named cases"
+)
 class TestFrozen:
     """No array of a result can be written to, nor its base, nor an attribute replaced; the same for every copy. What
     the caller passed in stays the caller's: neither changed, nor frozen, nor shared."""
@@ -198,6 +210,7 @@ class TestFrozen:
         assert base is None or not base.flags.writeable
 
     def test_control_a_view_would_be_noticed(self) -> None:
+        """A read-only view of an array that is not."""
         base = np.arange(6)
         view = base.reshape(2, 3)
         view.setflags(write=False)
@@ -268,6 +281,9 @@ EACH_COPY = pytest.mark.parametrize("made", COPIES.values(), ids=COPIES.keys())
 
 
 @EACH_CONSTRAINED
+@pytest.mark.obligation(
+    "G2", "results with segments are frozen, compared and renumbered as a whole", method="named cases"
+)
 class TestConstrained:
     """All of this holds of the arrays that come with segments, too; the canonical form renumbers those as well."""
 
@@ -300,6 +316,7 @@ class TestConstrained:
             assert by_place(m) == by_place(other)
 
     def test_control_equality_looks_at_segments(self, mesh: Triangulation) -> None:
+        """A segment left out, regions exchanged."""
         fewer = dataclasses.replace(mesh, segments=mesh.segments[1:], segment_markers=mesh.segment_markers[1:])
         assert fewer != mesh
         turned = dataclasses.replace(mesh, triangle_regions=mesh.triangle_regions[::-1] + 1)
@@ -373,6 +390,9 @@ def misplaced(mesh: Triangulation, queries: list[Point], found: list[int]) -> li
 
 
 @pytest.mark.bounds
+@pytest.mark.obligation(
+    "G3", "locate names a triangle that holds the point, or none where there is none", method="property-based"
+)
 class TestLocate:
     """A point is in the closure of the triangle that locate names; -1 means that it is in none."""
 
@@ -396,6 +416,7 @@ class TestLocate:
         assert found.dtype == np.int32
 
     def test_control_a_misplaced_point_is_noticed(self) -> None:
+        """Another triangle named, and a triangle for a point outside."""
         mesh = MESHES["random"]
         queries: list[Point] = [(0.5, 0.5), (9.0, 9.0)]
         here, outside = mesh.locate(queries).tolist()

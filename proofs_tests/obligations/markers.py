@@ -74,7 +74,7 @@ def _read(call: ast.Call, place: str, classes: Mapping[str, ast.ClassDef]) -> Ob
         elif elsewhere is not None:
             other = elsewhere if "::" in elsewhere else f"{place.partition('::')[0]}::{elsewhere}"
             controls += (
-                Control(control.name, f"{control.fault} ({elsewhere.rpartition('::')[2]})")
+                Control(control.name, control.fault and f"{control.fault} ({elsewhere.rpartition('::')[2]})")
                 for control in _controls(classes[other])
             )
     except (ValueError, KeyError) as error:

@@ -18,9 +18,12 @@ FAMILIES = MappingProxyType(
         "D": "Voronoi diagrams and what is made of them",
         "ARR": "Arrangements of segments that cross",
         "P": "Input graphs and files",
+        "G": "What is given, and what is returned",
         "H": "Holes",
-        "F": "Fuzzing",
         "B": "The conformance suite for other meshers",
+        "S": "The strategies",
+        "T": "The interface of the triangle package",
+        "W": "The documents",
     }
 )
 
@@ -42,6 +45,7 @@ STATEMENTS = MappingProxyType(
         "M5": "constrained: one sink, every segment present, decided by visibility",
         "V1": "the verifier accepts exactly what has the property that is claimed",
         "V2": "each condition of the verifier is necessary",
+        "V3": "a report says what was found, and certifies what it was found of",
         "R1": "what refinement returns is what it says: theorems A to F, bounds, distances, grading",
         "R2": "refinement ends, for every valid graph",
         "J1": "compiled equals interpreted, bit for bit; no fused multiply-add; interrupts are heard",
@@ -67,11 +71,23 @@ STATEMENTS = MappingProxyType(
         "P3": "rings, GeoJSON and shapely come back bit for bit",
         "P4": "graphs on file come back bit for bit",
         "P5": "whatever the bytes, a reader returns what they say, or a typed error that names the culprit",
+        "P6": "what is written is read back bit for bit; a file is replaced whole or not at all",
+        "G1": "what cannot be taken is refused by every function alike, and named",
+        "G2": "what is returned or kept is frozen",
+        "G3": "locate names a triangle that the point is in",
+        "G4": "arrays and statistics are those of naive definitions",
         "H1": "the seeds of the holes alone carve the same domain",
         "B1": "every planted fault is found within the default budget",
-        "B2": "a counterexample is as small as it can be, and shows the same again",
+        "B2": "nothing can be left out of a counterexample, and it shows the same again",
         "B3": "the known failures of other meshers are found",
         "B4": "whatever a mesher does to its process, the trial goes on",
+        "B5": "in a test suite, what is asserted is what is verified",
+        "S1": "what is drawn is what it is said to be",
+        "S2": "blunders are found, and shrunk",
+        "T1": "dictionaries are those of the package",
+        "T2": "a string of switches is read whole or refused",
+        "T3": "where Triangle dies, hangs or is silent, there is a mesh, a warning or an error",
+        "W1": "the examples in the documents run",
     }
 )
 

@@ -83,7 +83,9 @@ class TestMarkers:
         assert len(gaps(written(tmp_path, GOOD) * 2)) == 1
         assert len(gaps(written(tmp_path, GOOD.replace("K7", "K99")))) == 1
         assert len(gaps(written(tmp_path, GOOD, METHOD.replace("control", "it")))) == 1
-        assert len(gaps(written(tmp_path, GOOD, METHOD.replace('"""The fault."""', "assert True")))) == 1
+        mute = METHOD.replace('"""The fault."""', "assert True")
+        assert len(gaps(written(tmp_path, GOOD, mute))) == 1
+        assert len(gaps(written(tmp_path, f"{GOOD}, control_in='TestIt'", mute))) == 2  # its own, and as another's
 
 
 class TestPage:

@@ -87,6 +87,7 @@ def forbidden(module: str, source: str) -> list[str]:
 SOURCES = [(module_name(path, package), path) for package in (KERNEL, MESH) for path in sorted(package.rglob("*.py"))]
 
 
+@pytest.mark.obligation("V1", "the verifier imports no algorithm, the kernel nothing of the mesh", method="named cases")
 class TestImportDirections:
     """exactkernel imports nothing of exactmesh; the verifier no algorithm; algorithms neither files nor pictures nor
     the command."""
@@ -115,6 +116,7 @@ class TestImportDirections:
         ],
     )
     def test_control_a_wrong_import_is_noticed(self, module: str, line: str) -> None:
+        """Imports the other way, within functions too."""
         assert forbidden(module, line)
 
     def test_all_sources_are_seen(self) -> None:
@@ -137,6 +139,7 @@ def run_blocks(text: str, name: str) -> int:
 
 
 @pytest.mark.once
+@pytest.mark.obligation("W1", "every Python block of the README and of docs/ runs as it stands", method="named cases")
 class TestDocuments:
     """Every ```python block of the README and of docs/ runs as it stands, in an empty folder."""
 
@@ -147,6 +150,7 @@ class TestDocuments:
         assert run_blocks(text, str(path)) == text.count("```python")
 
     def test_control_blocks_share_names_and_can_fail(self) -> None:
+        """A block whose assertion does not hold."""
         assert run_blocks("```python\nx = 1\n```\n\n```python\nassert x == 1\n```\n", "good") == 2
         with pytest.raises(AssertionError):
             run_blocks("text\n```python\nassert 1 == 2\n```\n", "bad")

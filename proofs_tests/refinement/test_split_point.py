@@ -200,12 +200,16 @@ class TestControls:
     """Controls: the same law rejects splitting by plain arithmetic, and ignoring the tails of the differences."""
 
     def test_control_plain_arithmetic(self) -> None:
+        """The step added in plain doubles, and believed."""
         assert faults(NAMED["no bits left"], naive) != []
 
     def test_control_ignored_tails(self) -> None:
+        """A difference that was rounded, taken for exact."""
         assert faults(NAMED["a difference that is no double"], careless) != []
 
     def test_control_the_nearest_parameter(self) -> None:
+        """An eighth of the slack: the nearest parameter, where a coarser one would be exact."""
+
         def nearest(
             ax: float, ay: float, bx: float, by: float, t: float, slack: float, unit: float
         ) -> tuple[float, float, bool]:

@@ -25,7 +25,7 @@ DEGREES = ["degree 2", "degree 4"]  # names that do not depend on the constants
 
 @pytest.mark.obligation(
     "K1",
-    "the constants of the filters are the smallest that are sound, but for u",
+    "the constants of the filters exceed what the calculus asks for by less than 10^-12 of it",
     method="calculus",
     control_in="mutants",
 )

@@ -56,7 +56,7 @@ def inputs(name: str, precision: int, binades: int, quantum: float = 0.0) -> Axi
 
 @pytest.mark.obligation(
     "K3",
-    "the filters of degree 2 never lie: every input of 3, 4 and 5 bits",
+    "the filters of degree 2 never lie: every input of 3, 4 and 5 bits in few binades",
     method="exhaustive",
     control_in="TestFaultsAreFound",
 )
@@ -94,7 +94,7 @@ class TestFiltersOfDegree2:
 
 @pytest.mark.obligation(
     "K3",
-    "the filter of incircle never lies: every input of tiny formats",
+    "the filter of incircle never lies: 3 bits; 5 and 6 bits where the differences are exact",
     method="exhaustive",
     control_in="TestFaultsAreFound",
 )

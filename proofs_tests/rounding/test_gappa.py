@@ -40,7 +40,7 @@ def need(tool: str) -> None:
     pytest.skip(reason)
 
 
-@pytest.mark.obligation("K2", "the bounds that Gappa proves are those of the code", method="Gappa and Coq")
+@pytest.mark.obligation("K2", "the bounds that Gappa proves are those of the code", method="named cases")
 class TestHeads:
     """Each number of a script equals the constant of the code that its head names, and each line it models is there.
 

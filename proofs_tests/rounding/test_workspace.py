@@ -126,7 +126,7 @@ PAIR = (1.0, 0.0)
 
 
 @pytest.mark.obligation(
-    "K5", "no expansion outgrows its room, none is overwritten while in use", method="enumeration", control_in="mutants"
+    "K5", "no expansion outgrows its room, none is overwritten while in use", method="calculus", control_in="mutants"
 )
 class TestWorkspace:
     """With every expansion as long as it can be, each fits where it is written, and lasts as long as it is read."""

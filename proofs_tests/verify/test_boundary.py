@@ -121,7 +121,7 @@ class TestCycles:
 @pytest.mark.obligation(
     "V1",
     "a point lies outside of a convex cycle just when an edge separates it",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 class TestOutside:
@@ -152,7 +152,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 @pytest.mark.obligation(
-    "V1", "positions are found where there are any, exactly", method="exhaustive", control_in="mutants"
+    "V1", "positions are found where there are any, exactly", method="enumeration", control_in="mutants"
 )
 class TestPositions:
     """corners_at finds for each wanted position a used point that is there, and none where there is none, in whatever

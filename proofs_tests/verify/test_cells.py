@@ -76,7 +76,7 @@ SAMPLE = QUADS[::7]
 SHAPES = shaped(SAMPLE)[1]
 
 
-@pytest.mark.obligation("V1", "a quadrilateral is what its turns say", method="exhaustive", control_in="mutants")
+@pytest.mark.obligation("V1", "a quadrilateral is what its turns say", method="enumeration", control_in="mutants")
 class TestTurns:
     """Of quadrilaterals between points of a grid: the turns are those of their corners; the orientation is the sign of
     the area of those that are simple, 0 for all others; convex are those with four strict turns of one sign that are
@@ -159,7 +159,7 @@ def name(row: int, quad: Quad) -> str:
 @pytest.mark.obligation(
     "V1",
     "what is wrong with a quadrilateral is said by its kind, in fractions",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 class TestMessages:

@@ -48,6 +48,9 @@ def reports() -> list[Report]:
     ]  # fmt: skip
 
 
+@pytest.mark.obligation(
+    "V3", "a report's JSON is what its schema describes, and the same for the same report", method="named cases"
+)
 class TestSchema:
     """Law: what ``to_json`` writes is what its schema describes, and the same report makes the same text."""
 
@@ -78,6 +81,7 @@ class TestSchema:
         ],
     )
     def test_control_other_documents_are_noticed(self, path: str, value: object) -> None:
+        """Documents with one value changed."""
         document = part = json.loads(verify(KITE, HALVES).to_json())
         *way, last = path.split(".")
         for name in way:
@@ -109,6 +113,9 @@ def naive_sha256(points: Sequence[Sequence[float]], *blocks: tuple[int, Sequence
     return hashlib.sha256(data).hexdigest()
 
 
+@pytest.mark.obligation(
+    "V3", "the hash depends on the numbers and their order, and on nothing else", method="property-based"
+)
 class TestHash:
     """Law: the hash depends on the numbers and their order only, not on dtype, layout or the sign of a zero."""
 
@@ -132,6 +139,7 @@ class TestHash:
         assert array_sha256(array) == hashlib.sha256(whole).hexdigest()
 
     def test_control_whatever_changes_is_noticed(self) -> None:
+        """A coordinate, the order of points, rows or corners changed."""
         points, triangles = np.array(SQUARE), np.array(HALVES)
         none = np.empty((0, 4), dtype=np.int64)
         shifted = points.copy()

@@ -162,7 +162,7 @@ SQUARE = [(float(x), float(y)) for x in range(-2, 3) for y in range(-2, 3)]
 
 
 @pytest.mark.obligation(
-    "V1", "neighbours are sorted by direction, then distance", method="exhaustive", control_in="mutants"
+    "V1", "neighbours are sorted by direction, then distance", method="enumeration", control_in="mutants"
 )
 class TestSpokes:
     """All directions of a grid of five by five: their order, and the first neighbour in each."""

@@ -116,7 +116,7 @@ def areas_pass(limit: float) -> Pass:
     return pass_
 
 
-@pytest.mark.obligation("V1", "a value is graded by the side of the threshold that it is on", method="property-based")
+@pytest.mark.obligation("V1", "a value is graded by the side of the threshold that it is on", method="named cases")
 class TestGrade:
     """Beyond a 2^-40th of the threshold the side is told, within it nothing, nor outside of the window of weights."""
 
@@ -245,7 +245,7 @@ class TestPasses:
         assert {*sides} == {RESOLVED, ROUNDING_SIZED}
 
 
-@pytest.mark.obligation("V1", "a triangle is as wrong as its worst part", method="enumeration", control_in="mutants")
+@pytest.mark.obligation("V1", "a triangle is as wrong as its worst part", method="named cases", control_in="mutants")
 class TestWorstPart:
     """Of three edges or angles one that is wrong makes the triangle wrong; without any, one that double-doubles cannot
     tell leaves it to rationals: in every order."""
@@ -291,7 +291,7 @@ class TestWorstPart:
 @pytest.mark.obligation(
     "V1",
     "violations are ranked by size, what doubles leave open by fractions",
-    method="enumeration",
+    method="named cases",
     control_in="mutants",
 )
 class TestRanked:
@@ -364,7 +364,7 @@ class TestRanked:
 
 
 @pytest.mark.obligation(
-    "V1", "the corner across an edge is that of its other triangle", method="enumeration", control_in="mutants"
+    "V1", "the corner across an edge is that of its other triangle", method="named cases", control_in="mutants"
 )
 class TestFarCorners:
     """For every inner edge of a mesh the row names its two triangles' third corners, the near one and the far one."""

@@ -116,7 +116,7 @@ def found_kinds(links: Links) -> Counter[tuple[int, int, int]]:
     return found
 
 
-@pytest.mark.obligation("V1", "each slot says what counting says, whatever is listed", method="property-based")
+@pytest.mark.obligation("V1", "each slot says what counting says, whatever is listed", method="differential")
 class TestKinds:
     """In any list of triangles and quadrilaterals each directed edge has a slot for each cell that lists it: one says
     INNER, BOUNDARY or CROWDED by how many cells list its reverse, or NOT_DELAUNAY by the circle, the others REPEATED.
@@ -180,7 +180,7 @@ class TestKinds:
 
 
 @pytest.mark.obligation(
-    "V1", "a bucket is sorted and searched within its bounds", method="exhaustive", control_in="mutants"
+    "V1", "a bucket is sorted and searched within its bounds", method="enumeration", control_in="mutants"
 )
 class TestBuckets:
     """sort_bucket sorts just its bucket; place_slots tells whether an edge occurs twice in it; slot_of finds the first
@@ -302,7 +302,7 @@ def broken_vertices(cells: Sequence[Cell]) -> set[int]:
 
 
 @pytest.mark.obligation(
-    "V1", "edges that occur twice and broken fans are those of a search", method="property-based", control_in="mutants"
+    "V1", "edges that occur twice and broken fans are those of a search", method="differential", control_in="mutants"
 )
 class TestManifold:
     """EDGE_MANIFOLD fails once for each directed edge that is listed more than once, and names the first two cells;
@@ -350,7 +350,7 @@ class TestManifold:
                 assert violation.message.startswith(start)
 
 
-@pytest.mark.obligation("V1", "local numbers are a renaming", method="property-based", control_in="mutants")
+@pytest.mark.obligation("V1", "local numbers are a renaming", method="differential", control_in="mutants")
 class TestLocal:
     """Corners are numbered as the list comes upon them, triangles first; the local cells and points, renamed back, are
     the cells and their points."""

@@ -127,6 +127,7 @@ def number(page: Page, script: str, *arguments: object) -> float:
     return found
 
 
+@pytest.mark.obligation("V3", "the page shows mesh and violations in a browser, with no request", method="named cases")
 class TestBrowser:
     """Law: the page works by itself: no request, no complaint; every violation is listed; a click flies there; the
     picture shows the mesh, at every scale."""
@@ -144,6 +145,7 @@ class TestBrowser:
         assert colours(chromium) > 4
 
     def test_control_requests_and_complaints_are_noticed(self, chromium: Page, tmp_path: Path) -> None:
+        """A page that asks for a picture, and complains."""
         page = verify(KITE, HALVES).to_html().replace("img-src data:", "img-src *")
         page = page.replace("<aside", '<img src="http://127.0.0.1:9/nothing.png" alt=""><aside')
         chromium.open(page.replace('"use strict";', '"use strict"; console.error("oh");'), tmp_path)

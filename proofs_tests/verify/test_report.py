@@ -370,6 +370,7 @@ class TestReportAtAGlance:
         assert "not claimed" not in str(verify(*self.GOOD, claims=list(report.findings)))  # control
 
 
+@pytest.mark.obligation("V3", "inverted cells are told apart from the others' orientation", method="named cases")
 class TestListing:
     """Where cells may be listed either way, it is said how many are clockwise; where cells overlap, which of them are
     listed the other way round than most. Of an inverted cell of finite elements that is all that there is to see."""
@@ -404,6 +405,7 @@ class TestListing:
         assert report.findings[Property.ORIENTATION].note == "1 of 3 cells are listed clockwise"
 
     def test_control_nothing_is_said_where_all_are_alike_or_half(self) -> None:
+        """Meshes in which all, or half, are listed alike."""
         for rows in ([(0, 1, 2), (0, 1, 5)], [(0, 1, 2), (0, 5, 1)]):
             report = verify([*self.FAN, (1, 0.5)], rows, orientation="any")
             assert "most are" not in str(report)

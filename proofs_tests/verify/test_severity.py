@@ -269,6 +269,7 @@ def tilted_square() -> tuple[list[tuple[float, float]], IntArray]:
     raise AssertionError("no such square")
 
 
+@pytest.mark.obligation("V3", "the severity of a report is the worst over its claims", method="named cases")
 class TestReport:
     """The severity of a report is the worst over the claims that fail, and over what undecided ones wait for; the text
     begins with what is wrong."""
@@ -314,6 +315,7 @@ class TestReport:
 
     @pytest.mark.parametrize("drop", ["rounding", "order"])
     def test_control_blind_report(self, drop: str, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Every violation taken for wrong; findings told in any order."""
         points, triangles = tilted_square()
         if drop == "rounding":
             monkeypatch.setattr(Finding, "severity", property(lambda self: Severity.WRONG if self.count else None))

@@ -547,6 +547,9 @@ class TestAblation:
         assert not verify(points, mesh.triangles, domain=domain, within=1e-5, claims=COVER).ok
 
 
+@pytest.mark.obligation(
+    "V3", "the distance that a report advises would do, and three digits less would not", method="property-based"
+)
 class TestAdvice:
     """Where a mesh misses its domain by rounding, the report says which distance would do; it does, and that is the
     smallest one but for three digits. Where there is none so near, nothing is said."""
@@ -572,6 +575,7 @@ class TestAdvice:
 
     @pytest.mark.parametrize("within", [None, 1e-9])
     def test_control_what_is_missing_is_not_excused(self, within: float | None) -> None:
+        """A triangle taken away: no distance is advised."""
         domain = slanted(1)
         mesh = refine(domain, min_angle=20).triangulation
         for row in range(0, len(mesh.triangles), 7):
