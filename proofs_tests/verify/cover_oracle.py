@@ -114,10 +114,10 @@ class Picture:
                 if bound is not None and domain_oracle.y_at(bound, x) == domain_oracle.y_at((min(line), max(line)), x):
                     yield i
 
-    def parts(self, s: Line) -> list[RationalPoint]:
-        """The middles of the parts into which everything cuts a segment."""
+    def parts(self, s: Line) -> list[Line]:
+        """The parts into which everything cuts a segment."""
         lines = [*self.lines, *map(self.line, self.edges)]
-        return [domain_oracle.middle(p, q) for p, q in pairwise(domain_oracle.parts_of(s, lines))]
+        return [*pairwise(domain_oracle.parts_of(s, lines))]
 
     def along(self, p: RationalPoint, s: Line) -> bool:
         """Whether a point of a segment lies on an edge that runs along it."""
@@ -148,17 +148,23 @@ class Picture:
         rows = zip(self.inside, self.covered, self.cells.face, strict=True)
         return len({face for inside, covered, face in rows if inside and not covered})
 
-    def is_missing(self, s: Line) -> bool:
-        """Whether a segment lacks something within the triangles, or where it bounds a part of the domain."""
-        return self.lacks_a_part_within(s) or self.lacks_a_part_outside(s)
+    @cached_property
+    def missing_segments(self) -> int:
+        """How many segments lack something within the triangles; without any, where they bound a part of the domain."""
+        return sum(map(self.lacks_a_part_within, self.lines)) or sum(map(self.lacks_a_part_outside, self.lines))
+
+    @cached_property
+    def any_overlap(self) -> bool:
+        """Whether some segments have more than points in common: of a missing part, any of them may be told."""
+        return any(len({*domain_oracle.meeting_points(s, t)}) > 1 for s, t in combinations(self.lines, 2))
 
     def lacks_a_part_within(self, s: Line) -> bool:
-        return any(self.in_triangles(p) and not self.along(p, s) for p in self.parts(s))
+        middles = [domain_oracle.middle(*part) for part in self.parts(s)]
+        return any(self.in_triangles(p) and not self.along(p, s) for p in middles)
 
     def lacks_a_part_outside(self, s: Line) -> bool:
-        sides = [i for upper in (False, True) for i in self.beside(s, upper)]
-        bounds = any(self.inside[i] and not self.covered[i] for i in sides)
-        return bounds and any(not self.in_triangles(p) for p in self.parts(s))
+        outside = [part for part in self.parts(s) if not self.in_triangles(domain_oracle.middle(*part))]
+        return any(self.inside[i] for part in outside for upper in (False, True) for i in self.beside(part, upper))
 
     def is_hole_covered(self, i: int) -> bool:
         p = oracles.rationals(self.holes)[i]
