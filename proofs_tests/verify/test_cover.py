@@ -174,6 +174,15 @@ class TestWitnesses:
         told = Counter(violation.kind for violation in findings[Property.COVERS_DOMAIN].violations)
         assert told == {Kind.COVERED_OUTSIDE: 2}
 
+    @pytest.mark.parametrize("even_odd", [False, True])
+    def test_every_side_of_a_bare_square_is_missing(self, even_odd: bool) -> None:
+        points = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (5.0, 5.0), (6.0, 5.0), (6.0, 6.0), (5.0, 6.0)]
+        segments = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 6), (6, 3)]
+        shown = Picture(points, [(0, 1, 2)], points, segments, [], even_odd)
+        findings = report_on(shown).findings
+        assert not faults(shown, findings)
+        assert findings[Property.SEGMENTS_PRESENT].count == 4
+
     def test_control_another_mesh(self) -> None:
         """Without one of its triangles a mesh is another one, and what was said of it is not so."""
         random, noticed = Random(1), 0

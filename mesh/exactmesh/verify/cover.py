@@ -37,10 +37,10 @@ class Placed:
 
     Attributes:
         outline: the domain as given.
-        coordinates, holes, regions: its points in the coordinates of the mesh.
+        coordinates, holes: its points in the coordinates of the mesh.
         corner: (n,) the corner at each point's position, -1 where there is none.
         present: (s,) which segments are chains of edges from end to end.
-        marks: of the edges, by these segments only.
+        marks: of the edges, by these segments only: a copy.
         within: how far segments and their ends may be from where they should be; None: not at all.
         squared: the exact square of the largest such distance, isolated points left out.
     """
@@ -48,7 +48,6 @@ class Placed:
     outline: Outline
     coordinates: FloatArray
     holes: FloatArray
-    regions: FloatArray
     corner: IndexArray
     present: npt.NDArray[np.bool_]
     marks: Marks
@@ -153,9 +152,7 @@ def check_inner_parts(mesh: Mesh, links: Links, marks: Marks, placed: Placed, su
     odd = plane.odd[parts] > 0
     found = np.empty(len(parts), dtype=np.bool_)
     for toggled in (False, True):
-        found[odd == toggled] = chained(
-            mesh, links, ends[odd == toggled], marks, (bits & ~ODD) | (ODD if toggled else 0)
-        )
+        found[odd == toggled] = chained(mesh, links, ends[odd == toggled], marks, bits if toggled else bits & ~ODD)
     missing = np.unique(absent[plane.source[parts[~found]]])
     return finding_of(
         missing, lambda i: _missing(placed, i, "is no chain of edges where it runs through the triangles")
