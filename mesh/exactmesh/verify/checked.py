@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from exactkernel.types import FloatArray
 
 if TYPE_CHECKING:
@@ -13,10 +11,6 @@ if TYPE_CHECKING:
     from exactmesh.verify.mesh import Integers
 
 __all__ = ["CheckedMesh"]
-
-
-def _no_quads() -> "Integers":
-    return np.empty((0, 4), dtype=np.int32)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -37,7 +31,7 @@ class CheckedMesh:
 
     points: FloatArray
     triangles: "Integers"
-    quads: "Integers" = field(default_factory=_no_quads)
+    quads: "Integers"
     segments: "Integers | None" = None
     labels: FloatArray | None = None
     domain: "Outline | None" = None

@@ -37,10 +37,10 @@ class Placed:
 
     Attributes:
         outline: the domain as given.
-        coordinates, holes, regions: its points in the coordinates of the mesh.
+        coordinates, holes: its points in the coordinates of the mesh.
         corner: (n,) the corner at each point's position, -1 where there is none.
         present: (s,) which segments are chains of edges from end to end.
-        marks: of the edges, by these segments only.
+        marks: of the edges, by these segments only: a copy.
         within: how far segments and their ends may be from where they should be; None: not at all.
         squared: the exact square of the largest such distance, isolated points left out.
     """
@@ -48,7 +48,6 @@ class Placed:
     outline: Outline
     coordinates: FloatArray
     holes: FloatArray
-    regions: FloatArray
     corner: IndexArray
     present: npt.NDArray[np.bool_]
     marks: Marks
@@ -81,8 +80,9 @@ class Survey:
     Attributes:
         faces: the faces.
         hole_sides, hole_free: where each hole's point lies, and whether that is on no edge.
-        stray, stray_covered: the domain's points that are at no corner, and whether they lie in the closed union.
-        unused_covered: whether each unused point of the mesh lies in the closed union.
+        stray, stray_covered: the domain's points that are at no corner, and whether they lie in the closed union: of
+            an edge of the boundary on which they lie they are located on the covered side.
+        unused_covered: whether each unused point of the mesh, at no corner either, lies in the closed union.
     """
 
     faces: Faces
@@ -103,30 +103,28 @@ def surveyed(
         links: theirs.
         marks: of the edges; what absent segments share with edges of the boundary is added.
         placed: the domain, or None.
-        unused: unused points of the mesh.
+        unused: unused points of the mesh that are at no corner's position.
         bits: what a segment of the domain makes of an edge.
         inner: whether the segments within the union cut as well.
     """
     slots = slots_of(links, BOUNDARY)
-    if inner or (placed is not None and placed.outline.even_odd and placed.absent.size):
+    if inner or (placed is not None and placed.outline.even_odd):
         cutting = marks & (IN_DOMAIN if inner else ODD) > 0  # what is odd counts, together with what is not found yet
         slots = np.concatenate([slots, np.flatnonzero(cutting & (links.kinds != BOUNDARY))])
     none = np.empty(0, dtype=np.intp)
-    stray, holes, loose = none, np.empty((0, 2)), None
+    stray, h, loose = none, 0, None
     queries = [mesh.coordinates[unused]]
     if placed is not None:
-        stray, holes = np.flatnonzero(placed.corner < 0), placed.holes
-        queries = [holes, placed.coordinates[stray], mesh.coordinates[unused]]
+        stray, h = np.flatnonzero(placed.corner < 0), len(placed.holes)
+        queries = [placed.holes, placed.coordinates[stray], mesh.coordinates[unused]]
         ends = placed.outline.segments[placed.absent]
         loose = (placed.coordinates[ends], placed.corner[ends]) if len(ends) else None
     odd = (marks if placed is None else placed.marks)[slots] & ODD > 0
     faces = faces_of(mesh, links, slots, odd, loose, np.concatenate(queries))
     if not inner:
         joined_marks(faces, marks, bits)
-    sides, on = faces.answers
-    rigid = (sides >> 1) < len(slots)
-    covered = faces.covered(sides) | (on & rigid)
-    h, s = len(holes), len(stray)
+    sides, _ = faces.answers
+    covered, s = faces.covered(sides), len(stray)
     return Survey(faces, sides[:h], ~_on_segments(faces, marks)[:h], stray, covered[h : h + s], covered[h + s :])
 
 
@@ -154,9 +152,7 @@ def check_inner_parts(mesh: Mesh, links: Links, marks: Marks, placed: Placed, su
     odd = plane.odd[parts] > 0
     found = np.empty(len(parts), dtype=np.bool_)
     for toggled in (False, True):
-        found[odd == toggled] = chained(
-            mesh, links, ends[odd == toggled], marks, (bits & ~ODD) | (ODD if toggled else 0)
-        )
+        found[odd == toggled] = chained(mesh, links, ends[odd == toggled], marks, bits if toggled else bits & ~ODD)
     missing = np.unique(absent[plane.source[parts[~found]]])
     return finding_of(
         missing, lambda i: _missing(placed, i, "is no chain of edges where it runs through the triangles")
@@ -230,12 +226,10 @@ def in_domain(placed: Placed, survey: Survey, sides: IndexArray) -> npt.NDArray[
     return found
 
 
-def bare_sides(placed: Placed, survey: Survey) -> IndexArray:
-    """Return the sides of edges that triangles do not cover although they belong to the domain."""
-    faces = survey.faces
-    sides = np.concatenate([2 * faces.edges, 2 * faces.edges + 1])
-    sides = sides[~faces.covered(sides)]
-    return sides[in_domain(placed, survey, sides)]
+def first_of_faces(faces: Faces, sides: IndexArray) -> IndexArray:
+    """Return the first of the sides of each face."""
+    _, first = np.unique(faces.plane.face[sides], return_index=True)
+    return sides[np.sort(first)]
 
 
 def check_cover(mesh: Mesh, links: Links, marks: Marks, placed: Placed, survey: Survey | None) -> Finding:
@@ -260,21 +254,19 @@ def check_cover(mesh: Mesh, links: Links, marks: Marks, placed: Placed, survey: 
 
 
 def _against_faces(mesh: Mesh, placed: Placed, survey: Survey) -> list[Finding]:
-    faces, face = survey.faces, survey.faces.plane.face
+    """Compare the faces, each by the lower side of an edge: what is bounded has one."""
+    faces, sides = survey.faces, 2 * survey.faces.edges
     holes = np.flatnonzero(survey.hole_free)
     holes = holes[faces.covered(survey.hole_sides[holes])]
-    bare = bare_sides(placed, survey)
-    _, first = np.unique(face[bare], return_index=True)
+    covered = faces.covered(sides)
+    bare = sides[~covered & in_domain(placed, survey, sides)]
     found = [
         finding_of(holes, lambda i: _covered_hole(placed, i)),
-        finding_of(bare[np.sort(first)], lambda side: _bare_face(mesh, placed, faces, side)),
+        finding_of(first_of_faces(faces, bare), lambda side: _bare_face(mesh, placed, faces, side >> 1)),
     ]
     if placed.outline.even_odd:
-        sides = np.concatenate([2 * faces.edges, 2 * faces.edges + 1])
-        sides = sides[faces.covered(sides)]
-        sides = sides[~faces.odd(sides)]
-        _, first = np.unique(face[sides], return_index=True)
-        found.append(finding_of(sides[np.sort(first)], lambda side: _covered_outside(mesh, faces, side)))
+        even = first_of_faces(faces, sides[covered & ~faces.odd(sides)])
+        found.append(finding_of(even, lambda side: _covered_outside(mesh, faces, side >> 1)))
     return found
 
 
@@ -310,23 +302,19 @@ def _covered_hole(placed: Placed, i: int) -> Violation:
     return Violation(Property.COVERS_DOMAIN, Kind.COVERED_HOLE, (), (), message, places=places)
 
 
-def _bare_face(mesh: Mesh, placed: Placed, faces: Faces, side: int) -> Violation:
-    e = side >> 1
-    where = "above" if side & 1 else "below"
+def _bare_face(mesh: Mesh, placed: Placed, faces: Faces, e: int) -> Violation:
     if faces.plane.sort[e] == LOOSE:
         segment = int(placed.absent[faces.plane.source[e]])
         name, places = placed.name(segment), placed.ends(segment)
     else:
         name, places = _edge(mesh, faces, e), ()
-    message = f"no triangle covers the face of the domain {where} {name}"
+    message = f"no triangle covers the face of the domain below {name}"
     corners = _corners(faces, e)
     return Violation(Property.COVERS_DOMAIN, Kind.NOT_COVERED, (), corners, message, places=places)
 
 
-def _covered_outside(mesh: Mesh, faces: Faces, side: int) -> Violation:
-    e = side >> 1
-    where = "above" if side & 1 else "below"
-    message = f"triangles cover the face {where} {_edge(mesh, faces, e)}, which is outside of the domain"
+def _covered_outside(mesh: Mesh, faces: Faces, e: int) -> Violation:
+    message = f"triangles cover the face below {_edge(mesh, faces, e)}, which is outside of the domain"
     return _violation(Kind.COVERED_OUTSIDE, _corners(faces, e), message)
 
 

@@ -43,10 +43,10 @@ def placed_exactly(
 ) -> Placed:
     """Look for points at their positions and for segments that are straight chains; mark the edges of these."""
     n, h = len(outline.points), len(outline.holes)
-    points, holes, regions = positions[:n], positions[n : n + h], positions[n + h :]
+    points, holes = positions[:n], positions[n : n + h]
     corner = corners_at(mesh.coordinates, used_points(links), points)
     present = chained(mesh, links, corner[outline.segments], marks, bits)
-    return Placed(outline, points, holes, regions, corner, present, marks if present.all() else marks.copy())
+    return Placed(outline, points, holes, corner, present, marks.copy())
 
 
 def displaced_placements(
@@ -131,8 +131,7 @@ def _with_chains(
         mark_chains(slots[~left_out[owner]], written, bits)
         present[chosen.rows] = True
         squared = max(placed.squared, largest_squared(mesh, points, segments, chosen))
-        snapshot = written if present.all() else written.copy()
-        yield replace(placed, present=present, marks=snapshot, squared=squared), written
+        yield replace(placed, present=present, marks=written.copy(), squared=squared), written
         if not left_out.any():
             return
 

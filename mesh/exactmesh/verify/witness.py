@@ -90,8 +90,7 @@ def rows_of_triangles(
     near = np.zeros(n, dtype=np.bool_)
     near[[v for corners in wanted for v in corners]] = True
     found: dict[frozenset[int], list[int]] = {frozenset(corners): [] for corners in wanted}
-    candidates = np.flatnonzero(near[triangles[:, 0]])
-    for row in candidates[near[triangles[candidates, 1]] & near[triangles[candidates, 2]]]:
+    for row in np.flatnonzero(near[triangles].all(axis=1)):
         rows = found.get(frozenset(triangles[row].tolist()))
         if rows is not None and len(rows) < _NAMED_ROWS:
             rows.append(int(row))
@@ -105,14 +104,12 @@ def rows_of_triangles(
     return [tuple(found[frozenset(corners)]) for corners in wanted]
 
 
-def rows_at_vertices(
-    triangles: IntArray, vertices: IndexArray, n: int, quads: IntArray | None = None
-) -> dict[int, tuple[int, ...]]:
+def rows_at_vertices(triangles: IntArray, vertices: IndexArray, n: int, quads: IntArray) -> dict[int, tuple[int, ...]]:
     """Return for each vertex the first rows of cells that have it as a corner. O(m)."""
     near = np.zeros(n, dtype=np.bool_)
     near[vertices] = True
     rows: dict[int, tuple[int, ...]] = {int(v): () for v in vertices}
-    for before, cells in ((0, triangles), (len(triangles), triangles[:0] if quads is None else quads)):
+    for before, cells in ((0, triangles), (len(triangles), quads)):
         for row in np.flatnonzero(near[cells].any(axis=1)):
             for v in cells[row].tolist():
                 if v in rows and len(rows[v]) < _NAMED_ROWS:
