@@ -57,6 +57,7 @@ class TestBetweenNeighbours:
             if abs(inside) < Fraction(error * ulp) * (1 + Fraction(1, 2**21)) + both / 2**51:
                 assert found == UNKNOWN
         assert seen == {NO, YES, UNKNOWN}
+        assert len(seen) == 3
 
     @pytest.mark.parametrize("share", [2.0**-21, 1.5 * 2.0**-20])
     def test_slack(self, share: float) -> None:
@@ -141,7 +142,8 @@ class TestMatching:
 
     def test_ends(self) -> None:
         """Four questions with three answers each; vertices are 4 apart, triangles 4 and a little."""
-        vertices, ends, rows, table, wanted = [], [], [], [], []
+        vertices, table = list[tuple[float, float]](), list[tuple[int, int]]()
+        ends, rows, wanted = list[tuple[int, int]](), list[tuple[int, int]](), list[int]()
         for ps, pt, qs, qt in product(ANSWERS, repeat=4):
             straight, turned = (ps, qt), (pt, qs)
             p, q = (1.0, 2.0), (1.0, 1.0 if len(ends) % 2 else 1.5)

@@ -77,7 +77,7 @@ class Check:
         """Return what is wrong: ridges that are missing, or too many; rays; vertices."""
         real = self.slots >= 0
         ray = self.rows[:, 1] < 0
-        misplaced = real & (ray != (self.claimed.ends[:, 1] < 0)) | (self.claimed.ends[:, 0] < 0)
+        misplaced = real & ((ray != (self.claimed.ends[:, 1] < 0)) | (self.claimed.ends[:, 0] < 0))
         told = real & ~misplaced
         empty = np.zeros(len(self.slots), dtype=np.bool_)  # between equal circumcentres: nothing, and no harm
         empty[told] = ~self.expected[self.slots[told]]
