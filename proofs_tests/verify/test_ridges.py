@@ -194,14 +194,17 @@ class TestByTriangles:
             assert {tuple(pair) for pair in found.pairs[:3].tolist()} == {*arcs(triangle)}
             assert found.pairs[3].tolist() == [-1, -1]
 
-    def test_inner(self) -> None:
-        """A ray of a triangle without an edge on the boundary has none."""
-        points = [(0.0, 0.0), (10.0, 0.0), (5.0, 9.0), (4.0, 2.0), (6.0, 2.0), (5.0, 4.0)]
-        mesh = delaunay(points)
-        inner = [t for t, row in enumerate(mesh.triangles.tolist()) if {*row} == {3, 4, 5}]
-        claimed: tuple[npt.ArrayLike, ...] = (np.zeros((len(mesh.triangles), 2)), [], inner, [(1.0, 0.0)])
-        triangles = [(int(a), int(b), int(c)) for a, b, c in mesh.triangles]
-        assert read(claimed, points, triangles).pairs.tolist() == [[-1, -1]]
+    def test_no_other_edges(self) -> None:
+        """Of each triangle of a triangulation three rays have its edges on the boundary, and no other ones."""
+        points = [(float(x), float(y)) for x, y in grid(3, 3)]
+        for rows in islice(triangulations(grid(3, 3)), 0, None, 60):
+            every = {arc for t in rows for arc in arcs(t)}
+            origins = [t for t in range(len(rows)) for _ in range(3)]
+            found = read((np.zeros((len(rows), 2)), [], origins, [(1.0, 7.0)] * len(origins)), points, list(rows))
+            for t, row in enumerate(rows):
+                there = {tuple(pair) for pair in found.pairs[3 * t : 3 * t + 3].tolist()}
+                outer = {(v, w) for v, w in arcs(row) if (w, v) not in every}
+                assert there == outer | ({(-1, -1)} if len(outer) < 3 else set())
 
     @pytest.mark.parametrize("seed", range(4))
     def test_drop_in(self, seed: int) -> None:

@@ -99,7 +99,7 @@ class TestSwept:
     def test_any_set(self, points: list[tuple[int, int]], chunk: int) -> None:
         exact, seen = oracles.rationals(points), Counter[int]()
         random = Random(chunk)
-        for triangles in sets_of(points, chunk, 150):
+        for triangles in sets_of(points, chunk, 60):
             edges = boundary_of(triangles)
             random.shuffle(edges)
             fault, shown = told(points, edges)

@@ -147,7 +147,7 @@ def _edges_of_rays(
 ) -> IndexArray:
     """Return for each ray an edge of its triangle on the boundary: of several, that which no other ray has, and which
     it leaves most nearly at a right angle. If it is the wrong one, the diagram is wrong all the same."""
-    pairs, taken = np.full((len(origins), 2), -1, dtype=np.intp), set[tuple[int, int]]()
+    pairs, taken = np.empty((len(origins), 2), dtype=np.intp), set[tuple[int, int]]()
     for i, t in enumerate(origins.tolist()):
         a, b, c = triangles[t].tolist()
         free = [
