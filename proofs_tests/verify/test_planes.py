@@ -75,7 +75,7 @@ def runs_through(e: Edge, v: int) -> bool:
     return v not in e and oracles.on_segment(EXACT[v], EXACT[e[0]], EXACT[e[1]])
 
 
-def drawn(seed: int, segments: int, rows: Sequence[Triangle]) -> Drawing:
+def drawn(seed: int, rows: Sequence[Triangle]) -> Drawing:
     """Some triangles of a triangulation of the grid: all the edges of the boundary, some others, segments."""
     random, name = Random(seed), [PLACES.index(p) for p in grid(3, 3)]
     triangles = [tuple(name[v] for v in t) for t in rows if random.random() < 0.7]
@@ -89,7 +89,7 @@ def drawn(seed: int, segments: int, rows: Sequence[Triangle]) -> Drawing:
     if random.random() < 0.3:
         odd ^= {random.choice([*rigid])}
     drawing = Drawing([[EXACT[v] for v in t] for t in triangles], rigid, odd, [])
-    peaceful, closed = random.random() < 0.7, random.random() < 0.5
+    peaceful, closed, segments = random.random() < 0.6, random.random() < 0.5, (0, 1, 3, 6, 9)[seed % 5]
     for _ in range(100):
         corners = sorted(random.sample(range(len(PLACES)), 3))
         loop = [*combinations(corners, 2)] if closed else [(corners[0], corners[1])]
@@ -136,11 +136,9 @@ class TestSweep:
 
     @pytest.mark.parametrize("part", range(6))
     def test_outcomes(self, part: int) -> None:
-        seen, even = Counter[int](), 0
         for seed, rows in enumerate(MESHES[part % 2 :: 2]):
-            drawing = drawn(seed + 1000 * part, (0, 1, 3, 6, 9)[seed % 5], rows)
+            drawing = drawn(seed + 1000 * part, rows)
             outcome, plane = swept(drawing, 1 + seed % 3, bool(drawing.loose) or seed % 2 == 0)
-            seen[outcome] += 1
             clear = not any(runs_through(e, v) for e in drawing.rigid for v in drawing.nodes)
             pairs = combinations([*drawing.rigid, *drawing.loose], 2)
             clear = clear and not any(crosses(e, f) for e, f in pairs)
@@ -155,11 +153,16 @@ class TestSweep:
                 assert plane.sort[first] != LOOSE
                 assert runs_through(edge, second)
             else:
-                even += drawing.is_even
                 self.check(drawing, plane, faces=seed % 4 == 0)
-        assert seen[WHOLE] > even > 1
-        assert len({WHOLE, CROSSING, CUT}) == 3
-        assert min(seen[CROSSING], seen[CUT]) > 0
+
+    def test_control_all_outcomes(self) -> None:
+        """Vertices on rigid edges, and crossings; without either parities that are defined, and others."""
+        seen = Counter[tuple[int, bool]]()
+        for seed in range(4 * len(MESHES)):
+            drawing = drawn(seed, MESHES[seed % len(MESHES)])
+            seen[swept(drawing, 3, any_loose=True)[0], drawing.is_even] += 1
+        assert min(seen[outcome, even] for outcome in (WHOLE, CROSSING, CUT) for even in (False, True)) > 0
+        assert len({outcome for outcome, _ in seen}) == 3
 
     def check(self, drawing: Drawing, plane: Plane, *, faces: bool) -> None:
         done = np.flatnonzero(plane.done).tolist()
@@ -229,7 +232,7 @@ class TestSweep:
     def test_rigid_alone(self) -> None:
         """Without loose edges it does not matter whether the sweep looks for cuts."""
         for seed, rows in enumerate(MESHES[:12]):
-            drawing = drawn(seed, 0, rows)
+            drawing = drawn(5 * seed, rows)
             first, second = (swept(drawing, 4, any_loose) for any_loose in (False, True))
             assert first[0] == second[0] == WHOLE
             n = len(drawing.rigid)
