@@ -2,6 +2,7 @@
 
 from __future__ import annotations  # help() shows ArrayLike, not all that it stands for
 
+import functools
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from exactkernel.errors import ShapeError
 from exactkernel.types import FloatArray, IntArray
-from exactmesh.verify.links import Links
+from exactmesh.verify.links import Links, slot_of
 from exactmesh.verify.matching import corners_at
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.witness import IndexArray
@@ -146,17 +147,22 @@ def _edges_of_rays(
 ) -> IndexArray:
     """Return for each ray an edge of its triangle on the boundary: of several, that which no other ray has, and which
     it leaves most nearly at a right angle. If it is the wrong one, the diagram is wrong all the same."""
-    pairs, taken = np.full((len(origins), 2), -1, dtype=np.intp), set[tuple[int, int]]()
+    pairs, taken = np.empty((len(origins), 2), dtype=np.intp), set[tuple[int, int]]()
     for i, t in enumerate(origins.tolist()):
-        best = -np.inf
-        for j in range(3):
-            a, b = int(triangles[t, j]), int(triangles[t, (j + 1) % 3])
-            if (links.slots[links.first[b] : links.last[b]] >> 32 == a).any() or (a, b) in taken:
-                continue
-            ux, uy = (mesh.points[b] - mesh.points[a]) / (np.abs(mesh.points[b] - mesh.points[a]).max() or 1.0)
-            leaning = float((directions[i, 0] * uy - directions[i, 1] * ux) / np.hypot(ux, uy))
-            if leaning > best or pairs[i, 0] < 0:
-                best, pairs[i] = leaning, (a, b)
-        if pairs[i, 0] >= 0:
-            taken.add((int(pairs[i, 0]), int(pairs[i, 1])))
+        a, b, c = triangles[t].tolist()
+        free = [
+            (v, w)
+            for v, w in ((a, b), (b, c), (c, a))
+            if (v, w) not in taken and slot_of(links.slots, links.first[w], links.last[w], v) < 0
+        ]
+        chosen = max(free, key=functools.partial(_leaning, mesh.points, directions[i]), default=(-1, -1))
+        pairs[i] = chosen
+        taken.add(chosen)
     return pairs
+
+
+def _leaning(points: FloatArray, direction: FloatArray, edge: tuple[int, int]) -> float:
+    """Return the sine of the angle from a direction to an edge, times the direction's length."""
+    u = points[edge[1]] - points[edge[0]]
+    u /= np.abs(u).max()
+    return float((direction[0] * u[1] - direction[1] * u[0]) / np.hypot(u[0], u[1]))

@@ -21,14 +21,13 @@ from exactmesh.verify.dual_passes import (
     expect_ridges,
     fill_centres,
     find_ridges,
-    is_centre,
     match_ends,
     match_vertices,
 )
 from exactmesh.verify.links import Links, ends_of, slot_of
 from exactmesh.verify.mesh import Mesh
 from exactmesh.verify.properties import Kind, Property, Severity, Verdict
-from exactmesh.verify.report import Finding, Violation
+from exactmesh.verify.report import WITNESSES, Finding, Violation
 from exactmesh.verify.severity import MEASURE_BOUND
 from exactmesh.verify.witness import IndexArray, Ranking, approximately, exact, finding_of, joined, point_name
 
@@ -78,7 +77,7 @@ class Check:
         """Return what is wrong: ridges that are missing, or too many; rays; vertices."""
         real = self.slots >= 0
         ray = self.rows[:, 1] < 0
-        misplaced = real & (ray != (self.claimed.ends[:, 1] < 0)) | (self.claimed.ends[:, 0] < 0)
+        misplaced = real & ((ray != (self.claimed.ends[:, 1] < 0)) | (self.claimed.ends[:, 0] < 0))
         told = real & ~misplaced
         empty = np.zeros(len(self.slots), dtype=np.bool_)  # between equal circumcentres: nothing, and no harm
         empty[told] = ~self.expected[self.slots[told]]
@@ -157,19 +156,16 @@ class Check:
 
     def _ranking(self, wrong: IndexArray) -> Ranking:
         rounding = np.array([self._severity(v, t) is Severity.ROUNDING for v, t in wrong.tolist()], dtype=np.bool_)
-        return Ranking(np.argsort(rounding, kind="stable")[:100], int(rounding.sum()))
+        return Ranking(np.argsort(rounding, kind="stable")[:WITNESSES], int(rounding.sum()))
 
     def _centre(self, t: int) -> tuple[mpq, mpq]:
         return circumcentre(*(tuple(self.mesh.points[v].tolist()) for v in self.triangles[t]))
 
     def _is_next(self, v: int, t: int) -> bool:
         """Tell whether the coordinates are doubles next to the exact ones."""
-        x, y = self.claimed.vertices[v].tolist()
-        sure = is_centre(self.centres, t, x, y)
-        if sure != UNKNOWN:
-            return bool(sure == YES)
         raise_if_interrupted()
-        return all(_is_neighbour(c, z) for c, z in zip((x, y), self._centre(t), strict=True))
+        (x, y), (zx, zy) = self.claimed.vertices[v].tolist(), self._centre(t)
+        return _is_neighbour(x, zx) and _is_neighbour(y, zy)
 
     def _severity(self, v: int, t: int) -> Severity:
         """ROUNDING where doubles hardly tell that the squared distances from the corners differ."""
@@ -188,17 +184,12 @@ class Check:
 
     def _wrong(self, v: int, t: int) -> Violation:
         x, y = self.claimed.vertices[v].tolist()
-        corners, severity, message = (
-            tuple(self.triangles[t].tolist()),
-            self._severity(v, t),
-            f"vertex {v} of the diagram",
-        )
-        squared = None
+        corners, severity, squared = tuple(self.triangles[t].tolist()), self._severity(v, t), None
+        message = f"vertex {v} ({x!r}, {y!r}) of the diagram is not the circumcentre of triangle {t}"
         if math.isfinite(x) and math.isfinite(y):
             zx, zy = (Fraction(int(z.numerator), int(z.denominator)) for z in self._centre(t))
             squared = (Fraction(x) - zx) ** 2 + (Fraction(y) - zy) ** 2
-        apart = "" if squared is None else f": its squared distance is {approximately(squared)}"
-        message = f"vertex {v} ({x!r}, {y!r}) of the diagram is not the circumcentre of triangle {t}{apart}"
+            message += f": its squared distance is {approximately(squared)}"
         if severity is Severity.ROUNDING:
             message += ", rounding-sized"
         kind = Kind.WRONG_CENTRE
