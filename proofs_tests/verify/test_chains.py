@@ -129,6 +129,16 @@ class TestStraightChains:
                 assert chains.chained(mesh, links, np.array([(v, w)], dtype=np.intp), marks, ODD).all()
                 assert np.flatnonzero(marks).tolist() == [chains.edge_slot(links, v, w)]
 
+    def test_no_length(self) -> None:
+        """A segment from a point to itself, or to another point at its position, is no chain, even where triangles
+        without area have it for an edge."""
+        points = [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+        mesh, links = linked_mesh(points, [(0, 2, 3), (0, 1, 2)])
+        marks = np.zeros(len(links.slots), dtype=np.uint8)
+        ends = [(0, 1), (1, 0), (0, 0), (1, 1), (2, 2)]
+        assert not chains.chained(mesh, links, np.array(ends, dtype=np.intp), marks, CONSTRAINED).any()
+        assert not marks.any()
+
     def test_no_segments(self) -> None:
         mesh, links = linked_mesh(*holed_grid(0))
         marks = np.zeros(len(links.slots), dtype=np.uint8)
