@@ -150,7 +150,7 @@ class VerificationError(ExactMeshError):
         self.report = report
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True)
 class Report:
     """The verdict on every property of a mesh.
 
