@@ -119,8 +119,10 @@ class TestStraightChains:
                 low, high = sorted((v, w))
                 assert chains.edge_slot(links, v, w) == slots.get((low, high), slots.get((high, low), -1))
 
-    def test_an_edge_is_a_chain(self) -> None:
+    @pytest.mark.parametrize("large", [1, 64])
+    def test_an_edge_is_a_chain(self, large: int, monkeypatch: pytest.MonkeyPatch) -> None:
         """Whatever else lies on it: triangles over each other, with corners in the middle of edges."""
+        monkeypatch.setattr(spokes, "_LARGE", large)
         points = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)]
         for order in permutations([(0, 1, 2), (0, 3, 4), (3, 5, 4)]):
             mesh, links = linked_mesh(points, order)

@@ -75,7 +75,7 @@ class TestEquality:
     def test_control_what_is_said(self) -> None:
         """Another attribute of those that say something."""
         for more in ({"message": ""}, {"triangles": ()}, {"severity": Severity.ROUNDING}, {"places": ((0.0, 0.0),)}):
-            other = replace(self.plain, **more)  # type: ignore[arg-type]  # one attribute or another
+            other = replace(self.plain, **more)
             assert other != self.plain
             assert repr(other) != repr(self.plain)
 
