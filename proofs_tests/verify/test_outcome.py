@@ -10,7 +10,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exactmesh.verify import WITNESSES, Finding, Kind, Property, Report, Severity, Verdict, Violation, verify
+from exactmesh.verify import (
+    WITNESSES,
+    Finding,
+    Kind,
+    Property,
+    Report,
+    Severity,
+    Verdict,
+    Violation,
+    document,
+    verify,
+)
 from exactmesh.verify.properties import LOCAL_PROPERTIES
 from exactmesh.verify.report import root_above
 
@@ -128,3 +139,22 @@ class TestText:
         unused = verify([(float(i), float(i * i)) for i in range(n)], []).findings[Property.ALL_POINTS_USED]
         assert (unused.count, len(unused.violations)) == (n, min(n, 100))
         assert WITNESSES == 100
+
+    def test_notes(self) -> None:
+        """A note is there where there is something to note, and only there."""
+        for note in ("", "seen from below"):
+            finding = Finding(Verdict.HOLDS, note=note)
+            assert finding.to_dict().get("note", "") == note
+            assert ("note" in finding.to_dict()) is bool(note)
+
+    @pytest.mark.parametrize("n", [1, 2, 3])
+    def test_positions(self, n: int) -> None:
+        """Vertices from 0 to n - 1 have one, in hexadecimal digits and in decimal ones; others have none."""
+        points = [(0.5 * i, 1.0) for i in range(n)]
+        violation = verify(points, [(-1, 0, n)]).findings[Property.INDICES].violations[0]
+        positions = {row["vertex"]: (row["hex"], row["decimal"]) for row in document.numbered_positions(violation)}
+        assert positions == {
+            -1: (None, None),
+            0: (["0x0.0p+0", "0x1.0000000000000p+0"], ["0.0", "1.0"]),
+            n: (None, None),
+        }
