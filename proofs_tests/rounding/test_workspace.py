@@ -15,6 +15,7 @@ from proofs_tests.rounding.minifloat import Arithmetic, Floats
 
 from exactkernel import angle, bisector, centre, crossing, expansions, measure
 from exactkernel.context import SCRATCH_SIZE, guarded_context, make_context
+from exactmesh.verify import bottleneck
 
 # the functions hide their modules
 orient2d, incircle = (import_module(f"exactkernel.{name}") for name in ("orient2d", "incircle"))
@@ -108,6 +109,7 @@ ORIGINAL = {
         (bisector, "_term"),
         (centre, "_lifted"),
         (crossing, "_is_exact"),
+        (bottleneck, "cross_expansion"),
     ]
 }
 
@@ -194,3 +196,11 @@ class TestWorkspace:
         source(measure.area_code)(k, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
         source(measure.length_code)(k, 1.0, 0.0, 0.0, 1.0, 0.0)
         assert longest.calls == 8
+
+    def test_distances_from_a_segment(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        longest = longest_in(monkeypatch, bottleneck, "cross_expansion")
+        points, line = np.zeros((2, 2)), np.array([0.0, 0.0, 1.0, 0.0])
+        search = bottleneck.empty_search(2)
+        search.high[:] = search.error[:] = 0.0  # as near as the other, as far as this tells
+        source(bottleneck.compare)(guarded_context(), points, line, search, 0, 1)
+        assert longest.calls == 7

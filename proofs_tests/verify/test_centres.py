@@ -14,7 +14,7 @@ from proofs_tests.oracles import Triangle
 
 from exactkernel.constants import INCIRCLE_BOUND
 from exactkernel.context import Context, make_context
-from exactkernel.types import FloatArray
+from exactkernel.types import FloatArray, IntArray
 from exactmesh import delaunay
 from exactmesh.verify import Kind, Property, centres, verify
 from exactmesh.verify.adjacency import neighbours_of, rows_of_slots
@@ -64,8 +64,8 @@ class TestSide:
     @pytest.mark.parametrize("seed", range(6))
     def test_near_equality(self, seed: int) -> None:
         random, told = Random(seed), set[int]()
-        for _ in range(60):
-            points = line_and_triangle(random)
+        for _ in range(120):
+            points = line_and_triangle(random) * random.choice((1.0, 2.0**20, 2.0**-20))
             k = make_context(points)._replace(grid_limit=0.0)
             value, permanent = determinant_and_permanent(points)
             found, error = side(k, points), 2 * Fraction(INCIRCLE_BOUND) * permanent
@@ -118,6 +118,18 @@ def linked_mesh(points: FloatArray, triangles: Sequence[Triangle]) -> tuple[Mesh
     return mesh, linked(len(points), mesh.context, localized(mesh.coordinates, mesh.triangles, mesh.quads))
 
 
+def across_of(mesh: Mesh, links: Links) -> IntArray:
+    rows = rows_of_slots(links, mesh.triangles)
+    return neighbours_of(links, mesh.triangles, rows, np.zeros(len(links.slots), dtype=np.uint8), 0)
+
+
+def ladder(height: int, centre: int = 560) -> tuple[list[tuple[float, float]], list[Triangle]]:
+    """A tower two triangles wide on a flat one, whose circumcentre is so far above it."""
+    points = [(1.0, -1.0 / (2 * centre)), *((float(x), float(y)) for y in range(height + 1) for x in (0, 2))]
+    rungs = [((v, v + 1, v + 3), (v, v + 3, v + 2)) for v in range(1, 2 * height, 2)]
+    return points, [(0, 2, 1), *(t for rung in rungs for t in rung)]
+
+
 def holds(z: Place, corners: Sequence[Place]) -> bool:
     """Whether a counterclockwise triangle does, closed."""
     (zx, zy), ends = z, [*zip(corners, [*corners[1:], corners[0]], strict=True)]
@@ -146,9 +158,7 @@ class TestWalk:
         outside = elsewhere = 0
         for points, triangles in meshes(holes):
             mesh, links = linked_mesh(points, triangles)
-            rows = rows_of_slots(links, mesh.triangles)
-            marks = np.zeros(len(links.slots), dtype=np.uint8)
-            across = neighbours_of(links, mesh.triangles, rows, marks, 0)
+            across = across_of(mesh, links)
             exact = oracles.rationals(points.tolist())
             solid = [[exact[v] for v in t] for t in triangles]
             found = np.zeros(len(triangles), dtype=np.bool_)
@@ -164,6 +174,38 @@ class TestWalk:
                 outside += not inside
                 elsewhere += row not in (-1, t)
         assert min(outside, elsewhere) > 3
+
+    def test_whatever_the_numbers(self) -> None:
+        """Each triangle in turn is the first one: where walks begin, lead through and end."""
+        points, triangles = next(meshes(holes=False))
+        lengths = set[int]()
+        for first in range(len(triangles)):
+            mesh, links = linked_mesh(points, [*triangles[first:], *triangles[:first]])
+            across = across_of(mesh, links)
+            every = np.arange(len(triangles), dtype=np.int32)
+            found = np.zeros(len(triangles), dtype=np.bool_)
+            centres.find_centres(mesh.context, mesh.coordinates, mesh.triangles, across, every, found)
+            lengths.add(int(found.sum()))
+        assert len(lengths) == 1
+
+    @pytest.mark.parametrize(("height", "inside"), [(600, True), (540, False)])
+    def test_too_far_away(self, height: int, inside: bool) -> None:
+        """A walk of more than a thousand triangles is given up, and rationals tell where the circumcentre is."""
+        points, triangles = ladder(height)
+        mesh, links = linked_mesh(np.array(points), triangles)
+        across = across_of(mesh, links)
+        assert centres.walk_to_centre(mesh.context, mesh.coordinates, mesh.triangles, across, 0) == -1
+        finding = verify(points, triangles, claims=["circumcentres-inside"]).findings[Property.CIRCUMCENTRES_INSIDE]
+        assert [v.triangles for v in finding.violations] == ([] if inside else [(0,)])
+
+    def test_control_not_too_far_away(self) -> None:
+        """A ladder that is shorter: the walk ends where the circumcentre is."""
+        points, triangles = ladder(450, 400)
+        mesh, links = linked_mesh(np.array(points), triangles)
+        row = centres.walk_to_centre(mesh.context, mesh.coordinates, mesh.triangles, across_of(mesh, links), 0)
+        exact = oracles.rationals(points)
+        centre = oracles.circumcircle(*(exact[v] for v in triangles[0]))[0]
+        assert holds(centre, [exact[v] for v in triangles[row]])
 
 
 @pytest.mark.obligation("V1", "a position is located in the union exactly", method="differential")
@@ -244,6 +286,13 @@ class TestMessages:
         assert "the circumcentre (794, -1.5) of triangle 99 = 297 (792.0, 0.0)" in last.message
         acute = [(x, 3 * y) for x, y in points]
         assert verify(acute, triangles, claims=["circumcentres-inside"]).ok
+
+    def test_rounded_down(self) -> None:
+        """A centre between two doubles is shown as the lower one, to six digits; here these differ."""
+        tie = mpq(1000005, 1000000)
+        low, high = centres._between(tie)
+        assert (f"{low:.6g}", f"{high:.6g}") == ("1", "1.00001")
+        assert centres._shown((tie, -tie)) == "(1, -1.00001)"
 
     def test_no_area(self) -> None:
         points = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (0.0, 1.0)]

@@ -119,8 +119,10 @@ class TestStraightChains:
                 low, high = sorted((v, w))
                 assert chains.edge_slot(links, v, w) == slots.get((low, high), slots.get((high, low), -1))
 
-    def test_an_edge_is_a_chain(self) -> None:
+    @pytest.mark.parametrize("large", [1, 64])
+    def test_an_edge_is_a_chain(self, large: int, monkeypatch: pytest.MonkeyPatch) -> None:
         """Whatever else lies on it: triangles over each other, with corners in the middle of edges."""
+        monkeypatch.setattr(spokes, "_LARGE", large)
         points = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)]
         for order in permutations([(0, 1, 2), (0, 3, 4), (3, 5, 4)]):
             mesh, links = linked_mesh(points, order)
@@ -128,6 +130,16 @@ class TestStraightChains:
                 marks = np.zeros(len(links.slots), dtype=np.uint8)
                 assert chains.chained(mesh, links, np.array([(v, w)], dtype=np.intp), marks, ODD).all()
                 assert np.flatnonzero(marks).tolist() == [chains.edge_slot(links, v, w)]
+
+    def test_no_length(self) -> None:
+        """A segment from a point to itself, or to another point at its position, is no chain, even where triangles
+        without area have it for an edge."""
+        points = [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+        mesh, links = linked_mesh(points, [(0, 2, 3), (0, 1, 2)])
+        marks = np.zeros(len(links.slots), dtype=np.uint8)
+        ends = [(0, 1), (1, 0), (0, 0), (1, 1), (2, 2)]
+        assert not chains.chained(mesh, links, np.array(ends, dtype=np.intp), marks, CONSTRAINED).any()
+        assert not marks.any()
 
     def test_no_segments(self) -> None:
         mesh, links = linked_mesh(*holed_grid(0))

@@ -1,7 +1,7 @@
 """V1 for the cells that witnesses name, each function alone, against a look at all of them."""
 
 from collections.abc import Iterator
-from itertools import combinations, pairwise, product
+from itertools import combinations, pairwise, permutations, product
 from random import Random
 
 import numpy as np
@@ -127,6 +127,15 @@ class TestPairs:
             for points, cells in heaps(quads):
                 for kept in (cells[:6], cells[6:12], cells[-6:]):
                     self._check_unlinked(points, kept)
+
+    @pytest.mark.parametrize(
+        "fan", [((1, 2), (2, 3), (3, 1)), ((1, 2), (2, 3), (3, 6)), ((1, 2), (2, 3), (3, 6), (6, 8))]
+    )
+    def test_two_fans(self, fan: tuple[tuple[int, int], ...]) -> None:
+        """A fan, closed or open, and a cell apart from it, in every order: one row of each is named."""
+        for order in permutations([*fan, (4, 5)]):
+            arcs = [(tail, head, row) for row, (tail, head) in enumerate(order)]
+            assert order.index((4, 5)) in pairs._unlinked(arcs)
 
     @staticmethod
     def _check_unlinked(points: FloatArray, kept: list[Cell]) -> None:

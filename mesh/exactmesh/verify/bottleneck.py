@@ -106,11 +106,11 @@ def compare(k: Context, points: FloatArray, line: FloatArray, search: Search, v:
         return -1
     if search.high[w] + search.error[w] < search.high[v] - search.error[v]:
         return 1
-    one, other, total, rest = k.scratch[0:16], k.scratch[16:32], k.scratch[32:64], k.scratch[64:96]
+    one, other, rest = k.scratch[0:16], k.scratch[16:32], k.scratch[32:]
     n_one = cross_expansion(points, line, v, one, rest)
     n_other = cross_expansion(points, line, w, other, rest)
     negate(other, n_other)
-    return expansion_sign(total, expansion_sum(one, n_one, other, n_other, total))
+    return expansion_sign(rest, expansion_sum(one, n_one, other, n_other, rest))
 
 
 @jit

@@ -60,7 +60,7 @@ def _exponent(mesh: Mesh) -> int:
     """Return by which power of two the coordinates were scaled into the window."""
     i = int(np.argmax(np.abs(mesh.points)))
     given, scaled = float(mesh.points.flat[i]), float(mesh.coordinates.flat[i])
-    return math.frexp(scaled)[1] - math.frexp(given)[1] if given else 0
+    return math.frexp(scaled)[1] - math.frexp(given)[1]  # of 0 as well
 
 
 def near_chains(

@@ -23,7 +23,7 @@ WITNESSES = 100
 
 def root_above(value: Fraction) -> float:
     """Return the smallest double whose square is not smaller, possibly infinity."""
-    shift = max(0, 128 - value.numerator.bit_length() + value.denominator.bit_length()) // 2
+    shift = 64 + value.denominator.bit_length()  # the root, rounded down, has 64 bits at least
     root = Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
     try:
         nearest = float(root)
@@ -150,7 +150,7 @@ class VerificationError(ExactMeshError):
         self.report = report
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True)
 class Report:
     """The verdict on every property of a mesh.
 

@@ -37,7 +37,7 @@ class Status(NamedTuple):
 
 def empty_status(size: int) -> Status:
     """Return the empty status for edges 0 .. size - 1."""
-    nil = np.full((5, size), NIL, dtype=np.intp)
+    nil = np.full((3, size), NIL, dtype=np.intp)
     priority = np.random.default_rng(0).permutation(size)
     return Status(
         np.full((size, 2), NIL, dtype=np.intp),
