@@ -26,7 +26,7 @@ from exactkernel.expansions import two_diff
 
 @interpreted
 @pytest.mark.obligation(
-    "K1", "what angles are computed from: products exact on integers, pairs within their bound", method="enumeration"
+    "K1", "what angles are computed from: products exact on integers, pairs within their bound", method="property-based"
 )
 class TestParts:
     """Signs, twice the area, scalar products, and the value in double-double, each against fractions."""

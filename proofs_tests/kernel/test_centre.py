@@ -62,7 +62,7 @@ def symmetric(draw: random.Random) -> Triangle:
 
 
 @interpreted
-@pytest.mark.obligation("K1", "the error of a quotient in pairs is sound, and tight", method="calculus")
+@pytest.mark.obligation("K1", "the error of a quotient in pairs is sound, and tight", method="property-based")
 class TestQuotient:
     """Whatever numerator and denominator are within their errors, the result is within its own, which is no more than
     a quarter above the first order."""
@@ -91,7 +91,7 @@ class TestQuotient:
 
 @interpreted
 @pytest.mark.obligation(
-    "K1", "the circumcentre in pairs is within its error, which is known inside the window", method="calculus"
+    "K1", "the circumcentre in pairs is within its error, which is known inside the window", method="property-based"
 )
 class TestPairs:
     """The exact centre is within the errors; they are infinite outside of the window and where it is too flat."""

@@ -17,7 +17,7 @@ U = Fraction(1, 2**53)
 
 @interpreted
 @pytest.mark.obligation(
-    "K1", "the parts of a crossing: errors sound and tight, small products refused", method="calculus"
+    "K1", "the parts of a crossing: errors sound and tight, small products refused", method="property-based"
 )
 class TestParts:
     """Determinants and coordinates in pairs are within their errors, which the calculus does not undercut by much."""

@@ -222,7 +222,7 @@ class TestExpansions:
         assert not is_exact_expansion(np.array([0.0, 6.0]), 2, 6.0)
 
 
-@pytest.mark.obligation("K5", "the determinant of exact pairs is exact, in doubles", method="exhaustive")
+@pytest.mark.obligation("K5", "the determinant of exact pairs is exact, in doubles", method="named cases")
 class TestDeterminant:
     """determinant_2x2 of nonoverlapping pairs of doubles has the exact value, in sixteen components or fewer."""
 
