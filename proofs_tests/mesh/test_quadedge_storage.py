@@ -17,7 +17,7 @@ INT32 = range(-(2**31), 2**31)
 
 
 @pytest.mark.obligation(
-    "M1", "an edge keeps its four labels, whatever else is made or deleted", method="exhaustive", control_in="mutants"
+    "M1", "an edge keeps its four labels, whatever else is made or deleted", method="named cases", control_in="mutants"
 )
 class TestLabels:
     """Every int32 is a label, and no other integer; each edge keeps its two vertices and two faces while others are
