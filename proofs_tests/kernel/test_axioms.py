@@ -81,13 +81,14 @@ class TestAxiomsOverTheReals:
         assert is_zero(orient(p, q, r) - orient(*((x + v[0], y + v[1]) for x, y in (p, q, r))))
 
     def test_nondegeneracy(self) -> None:
-        """Neither pqr nor prq: then every point r is q + k (p - q), or p = q."""
+        """Neither pqr nor prq: then every point r is q + k (p - q), with k |p - q|^2 = (r - q) (p - q), or p = q."""
         (p, q, r), k = symbols("pqr"), sympy.Symbol("k")
         on_line = (q[0] + k * (p[0] - q[0]), q[1] + k * (p[1] - q[1]))
         assert is_zero(orient(p, q, on_line))
-        solution = sympy.solve(orient(p, q, r), r[1], dict=True)[0][r[1]]
-        parameter = (r[0] - q[0]) / (p[0] - q[0])
-        assert sympy.simplify(solution - (q[1] + parameter * (p[1] - q[1]))) == 0
+        (dx, dy), (x, y) = ((v[0] - q[0], v[1] - q[1]) for v in (p, r))
+        along = x * dx + y * dy
+        assert is_zero(x * squared(p, q) - along * dx - orient(p, q, r) * dy)
+        assert is_zero(y * squared(p, q) - along * dy + orient(p, q, r) * dx)
 
     def test_interiority(self) -> None:
         """tqr, ptr and pqt are the parts into which t divides pqr: their sum is pqr."""

@@ -88,7 +88,7 @@ class TestNearest:
 
 @interpreted
 @pytest.mark.obligation(
-    "K1", "the errors of a crossing with a bisector are bounded by the calculus of pairs", method="property-based"
+    "K1", "the errors of a crossing with a bisector are bounded as pairs are", method="property-based"
 )
 class TestErrors:
     """The quotient is told numerator and denominator within errors that hold, and are no larger than need be."""

@@ -43,7 +43,7 @@ class TestGrid:
             assert squared_distance(centre, a) == squared_distance(centre, b) == squared_distance(centre, c)
 
     def test_crossings(self) -> None:
-        for first, second in itertools.product(itertools.permutations(GRID[:8], 2), repeat=2):
+        for first, second in itertools.product(itertools.permutations(GRID, 2), repeat=2):
             (a, b), (c, d) = ([exact(p) for p in ends] for ends in (first, second))
             parallel = (b[0] - a[0]) * (d[1] - c[1]) == (b[1] - a[1]) * (d[0] - c[0])
             common = common_points(a, b, c, d)

@@ -116,7 +116,7 @@ def random_subsets(count: int) -> list[list[Cell]]:
 
 
 @pytest.mark.obligation(
-    "K9", "the triangles with empty perturbed circles are one triangulation of the hull", method="enumeration"
+    "K9", "the triangles with empty perturbed circles are one triangulation of the hull", method="property-based"
 )
 class TestUniqueTriangulation:
     """The triangles whose perturbed circle is empty cover the convex hull exactly once and use every point."""

@@ -11,7 +11,7 @@ ROOTS = (Path(__file__).resolve().parents[2] / "kernel", Path(__file__).resolve(
 
 #: Names of bounds, margins and guards, in the code's own manner of speaking.
 _NAMES = re.compile(
-    r"\w*(BOUND|MARGIN|SLACK|ERROR|DOUBT|FACTOR|WEIGHT|UNDERFLOW|RELATIVE|ABSOLUTE|ROUNDOFF|SMALL|ENOUGH|PRODUCT|STEPS)"
+    r"\w*(BOUND|MARGIN|SLACK|ERROR|DOUBT|FACTOR|WEIGHT|UNDERFLOW|RELATIVE|ABSOLUTE|ROUNDOFF|SMALL|TINY|CLEAR|ENOUGH|PRODUCT|STEPS)"
 )
 _ATTRIBUTES = frozenset({"orient2d_bound", "incircle_bound", "grid_limit"})
 _NO_BOUNDS = frozenset({"MEASURE_BOUND", "_STEPS", "_CHILD_ERROR"})  # a limit of exact comparisons; of a walk
@@ -40,7 +40,9 @@ ELSEWHERE: dict[str, str] = {
     "exactmesh.cavity.split_along": "the number of corners of a small polygon",
     "exactmesh.crossings.segment_meetings._neighbours_first": "an order in which pairs are looked at",
     "exactmesh.editing.draft.fitted": _CHOICE,
+    "exactmesh.ordering._along_curves": "an order in which points are inserted",
     "exactmesh.refinement.layout.laid_out": _CHOICE,
+    "exactmesh.refinement.placement.place_centre": _EXACT,
     "exactmesh.refinement.split_point._most_halves": _EXACT,
     "exactmesh.verify.delaunay._edges": "hands the constant to exact comparisons: rounding-sized or not",
     "exactmesh.verify.delaunay.describe": "hands the constant to exact comparisons: rounding-sized or not",

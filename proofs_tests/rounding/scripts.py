@@ -174,8 +174,8 @@ def certificate(body: str) -> tuple[str, str]:
     """Return the proof for Coq, the identities of hints as lemmas, and the name of its theorem.
 
     Raises:
-        ValueError: a hypothesis is left. Where its section ends, it becomes a premise, and Print Assumptions says
-            nothing of it.
+        ValueError: a hypothesis is left. Where its section ends, it becomes a premise: nothing that Print Assumptions
+            tells.
     """
     run = subprocess.run(["gappa", "-Bcoq"], input=body, capture_output=True, text=True, check=True)
     proof = re.sub(r"^Hypothesis (a\d+ : .*)$", rf"Lemma \1\n{REWRITING}", run.stdout, flags=re.MULTILINE)

@@ -136,8 +136,8 @@ class TestIncircle:
 )
 class TestShapes:
     """As above, for all sides that are pairs of integers up to 8 (6 for angles, 31 for lengths), and all bounds of 5
-    bits: areas and lengths zero or in ten binades; for angles sines of 1 to 2, and cosines zero, of 1 to 2 and a
-    quarter of that, where the true ones may be any within u of them."""
+    bits: areas and lengths zero or in ten binades; for angles sines of 1 to 2, and cosines zero, of 1 to 2 or a quarter
+    of that, where the true ones may be any within u of them."""
 
     @pytest.mark.parametrize("name", SHAPES)
     def test_shipped(self, name: str, record_property: Record) -> None:

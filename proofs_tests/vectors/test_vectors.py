@@ -76,7 +76,8 @@ class TestHardCases:
 
     @pytest.mark.parametrize("name", NAMES)
     def test_the_files_are_right(self, name: str) -> None:
-        """The script computes in integers; here the definitions in fractions, which share nothing with it."""
+        """The script computes in integers; here the definitions in fractions. They share nothing but the comparison of
+        angles with bounds, on which the second opinion is the library's, above."""
         assert disagreements(name, lambda case: {by_definition(name, case)}) == 0
 
     @pytest.mark.parametrize("name", NAMES)

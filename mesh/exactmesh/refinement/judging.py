@@ -17,6 +17,7 @@ _SMALL_INPUT_ANGLE = int(Reason.SMALL_INPUT_ANGLE)
 _ENCROACHED = int(SteinerKind.ENCROACHED)
 
 _CLEAR = 1.001  # a square beyond that times another is larger, rounded as they are
+_TINY = 2.0**-1000  # unless they underflow
 
 #: The cause of a point that divides a segment for a triangle that is too large: it is as close as was asked for.
 YIELDED_TO_SIZE = int(SteinerKind.YIELDED) | 4
@@ -107,7 +108,7 @@ def is_crowded(s: Sheet, rules: Rules, first: int, p: int, nearest: float) -> bo
 
     First is the first edge of p's link.
     """
-    if rules.min_edge == 0.0 or nearest > _CLEAR * rules.min_edge * rules.min_edge:
+    if rules.min_edge == 0.0 or nearest > max(_CLEAR * rules.min_edge * rules.min_edge, _TINY):
         return False
     e, last = first, origin(s.org, first)
     if is_shorter(s, rules.min_edge, last, p):

@@ -1,9 +1,12 @@
 # Of two positions, the one that is not farther is never left out: its computed squared distance is at most that of the
 # other, times 1 + 2^-40, plus 2^-500. S is the smaller exact square; four roundings each, and three underflows, of
 # 2^-1075 (and of differences of scaled coordinates, below 2^-1074 2^502).
+# Beyond a cut, dx or dy is at least across: rounding is monotone, so that squared is not less than across * across, and
+# what is not looked at is no candidate.
 #
 # code: exactmesh.verify.nearest.within_reach
 #   | squared = dx * dx + dy * dy
+#   | is_far_in_reach = across * across <= best * _RELATIVE + _ABSOLUTE
 #   | elif squared <= reach:
 # code: exactmesh.verify.nearest.find_nearest
 #   | _, counts[i] = within_reach(points, order, x, y, best * _RELATIVE + _ABSOLUTE, stack, found[i])
