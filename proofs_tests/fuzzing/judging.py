@@ -67,7 +67,9 @@ class Breach:
     @classmethod
     def of(cls, error: BaseException) -> "Breach":
         frames = traceback.extract_tb(error.__traceback__)
-        ours = [frame for frame in frames if any(room in frame.filename for room in _OURS)] or list(frames)
+        # what a law is demanded by stands in one place: who demands it tells one breach from another
+        telling = [frame for frame in frames if not frame.name.startswith("require")]
+        ours = [frame for frame in telling if any(room in frame.filename for room in _OURS)] or list(frames)
         place = f"{ours[-1].filename.rpartition('/')[2]}:{ours[-1].lineno}" if ours else "nowhere"
         return cls(type(error).__name__, place, " ".join(str(error).split())[:300])
 

@@ -78,6 +78,18 @@ class TestEveryReader:
         found = breaches(TARGETS["csv"], TARGETS["csv"].seeds()[:1])
         assert [breach.kind for _, breach in found] == ["WrongResultError"]
 
+    def test_wrong_results_of_two_kinds_are_two_findings(self) -> None:
+        def wrong(data: bytes) -> None:
+            if data == b"1":
+                require(False, "one law")
+            require(False, "another")
+
+        first, again, other = (judged(Target("wrong", wrong, list), data) for data in (b"1", b"1", b"2"))
+        assert first is not None
+        assert again is not None
+        assert other is not None
+        assert first.signature == again.signature != other.signature
+
     def test_control_an_archive_that_is_taken_at_its_word(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """The errors of numpy's header are no longer expected: what fuzzing found first is found again."""
         monkeypatch.setattr(npz, "_BROKEN", (ValueError,))

@@ -180,7 +180,8 @@ class _Order:
 
 
 class _Healthy:
-    """Makes sure of the tests that kill: each is run once without a mutant, and left out if it fails there too."""
+    """Makes sure of the tests that kill: each is run without a mutant, once and after each timeout, and left out if it
+    fails there too."""
 
     def __init__(self, run: Callable[[str], Outcome]) -> None:
         self.run, self.known, self.broken = run, {"import", ""}, set[str]()
@@ -190,7 +191,8 @@ class _Healthy:
         while True:
             outcome = attempt([test for test in tests if test not in self.broken])
             test = outcome[1]
-            if test in self.known or self.run(test)[0] == _SURVIVED:
+            is_slow = outcome[0] == "timeout"  # which may be the machine's fault, now and not before
+            if (test in self.known and not is_slow) or self.run(test)[0] == _SURVIVED:
                 self.known.add(test)
                 return outcome
             self.broken.add(test)

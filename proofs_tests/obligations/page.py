@@ -51,7 +51,7 @@ def _summary(
         methods = ", ".join(dict.fromkeys(o.method for o in sorted(own, key=_strength)))
         seconds = _seconds(sum(f.seconds for f in figures)) if figures else ""
         cases = f"{sum(f.cases for f in figures):,}" if figures else ""
-        faults = sum(len(o.controls) for o in own)
+        faults = len({control for o in own for control in o.controls})  # classes may share some
         link = f"[{identifier}](#{identifier.lower()})"
         cells = (link, STATEMENTS[identifier], methods, cases, seconds, str(faults or ""), _status(own, measured))
         yield f"| {' | '.join(cells)} |"

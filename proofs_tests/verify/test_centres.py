@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
 from random import Random
 
 import numpy as np
@@ -244,6 +244,22 @@ class TestOutline:
                     e for e in range(len(outline.left)) if outline.left[e, 0] < east and outline.right[e, 0] >= west
                 ]
                 assert listed == reach
+
+    def test_beside_corners(self) -> None:
+        """Less than half an ulp away, so that the nearest double is the corner's; a cut is at the next one."""
+        x, right = 1.1, math.nextafter(1.1, 2)
+        points = np.array(
+            [(-10.0, -2.1), (x, -2.1), (4.0, -1.9), (0.0, 10.0), (right, 100.0), (20.0, 100.0), (5.0, 110.0)]
+        )
+        triangles = [(0, 1, 3), (1, 2, 3), (4, 5, 6)]
+        mesh, links = linked_mesh(points, triangles)
+        outline, exact = Outline(mesh.points, boundary_of(links)), oracles.rationals(points.tolist())
+        assert right in outline.cuts
+        tiny = Fraction(1, 2**80)
+        for (px, py), i, j in product(exact, (-1, 0, 1), (-1, 0, 1)):
+            z = px + i * tiny, py + j * tiny
+            expected = any(holds(z, [exact[v] for v in t]) for t in triangles)
+            assert outline.holds((mpq(z[0]), mpq(z[1]))) == expected, z
 
     @pytest.mark.parametrize("value", [0.0, 1.5, -0.1, 1e308, -5e-324])
     def test_between(self, value: float) -> None:

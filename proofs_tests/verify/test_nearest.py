@@ -1,6 +1,7 @@
 """V1 for nearest corners and for chains within a distance, each function alone, against fractions."""
 
 import math
+import tracemalloc
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -243,6 +244,19 @@ class TestWithin:
         found = strips.found(math.inf, np.arange(many))
         assert found.vertices.tolist() == once.vertices.tolist() * many
         assert found.start.tolist() == [i * len(once.vertices) for i in range(many + 1)]
+
+    def test_room_grows_only_where_it_is_needed(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Fourteen pieces that need no more room: it would be megabytes, doubled after each."""
+        monkeypatch.setattr(displaced, "_CHUNK", 1)
+        strips = Strips(1)
+        strips.found(math.inf, np.array([0]))
+        strips.segments = np.repeat(strips.segments[:1], 14, axis=0)
+        tracemalloc.start()
+        found = strips.found(math.inf, np.arange(14))
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert len(found.rows) == 14
+        assert peak < 1 << 20
 
     def test_distance_of_a_line(self) -> None:
         a, b, p = np.array([1.0, 2.0**-60]), np.array([-3.0, 0.5]), np.array([0.0, 7.0])

@@ -461,6 +461,16 @@ class TestArguments:
     TWO = (((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), [(0, 1, 2)])
     HALF = PSLG([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], [(0, 1), (1, 2), (2, 0)])
 
+    def test_farther_than_any_double(self) -> None:
+        """A vertex 3e308 from its segment is within infinity, and within no double."""
+        h = 1.7e308
+        points = [(-h, h), (0.0, -h), (h, h), (0.0, -0.9 * h)]
+        domain = PSLG([(-h, h), (0.0, -h), (h, h)], [(0, 1), (1, 2), (2, 0)])
+        mesh = points, [(0, 1, 3), (1, 2, 3)]
+        assert verify(*mesh, domain=domain, within=math.inf).verdict(Property.COVERS_DOMAIN) is Verdict.HOLDS
+        largest = np.finfo(np.float64).max
+        assert verify(*mesh, domain=domain, within=largest).verdict(Property.COVERS_DOMAIN) is Verdict.FAILS
+
     @pytest.mark.parametrize("bad", [-1, math.nan, "1", True, [1.0]])
     def test_bad(self, bad: float) -> None:
         with pytest.raises(BoundError, match="within"):
