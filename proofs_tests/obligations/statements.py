@@ -46,7 +46,7 @@ STATEMENTS = MappingProxyType(
         "M5": "constrained: one sink, every segment present, decided by visibility",
         "V1": "the verifier accepts exactly what has the property that is claimed",
         "V2": "each condition of the verifier is necessary",
-        "V3": "a report says what was found, and certifies what it was found of",
+        "V3": "a report says what was found, by minimal witnesses, and certifies what it was found of",
         "R1": "what refinement returns is what it says: theorems A to F, bounds, distances, grading",
         "R2": "refinement ends, for every valid graph",
         "J1": "compiled equals interpreted, bit for bit; no fused multiply-add; interrupts are heard",
