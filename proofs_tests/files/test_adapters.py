@@ -54,6 +54,7 @@ def expected(points: npt.ArrayLike, *cells: npt.ArrayLike) -> set[frozenset[tupl
     return {frozenset(map(tuple, given[row].tolist())) for part in cells for row in np.asarray(part).tolist()}
 
 
+@pytest.mark.obligation("A1", "a pair, an object and arrays are the same mesh", method="named cases")
 class TestArrays:
     """A pair, an object with points and triangles, and arrays are the same mesh."""
 
@@ -105,7 +106,8 @@ class TestArrays:
             SimpleNamespace(points=POINTS),
         ],
     )
-    def test_what_is_no_mesh_is_refused(self, value: object) -> None:
+    def test_control_what_is_no_mesh_is_refused(self, value: object) -> None:
+        """Values that are no mesh."""
         with pytest.raises(AdapterError):
             verify(value)
 
@@ -116,6 +118,7 @@ class TestArrays:
             verify(POINTS)
 
 
+@pytest.mark.obligation("A1", "no column is cut off", method="named cases")
 class TestWidths:
     """Law: no column is cut off: rows that are wider than their cells are refused, whatever they came in."""
 
@@ -150,11 +153,16 @@ class TestWidths:
         with pytest.raises(ShapeError, match=name):
             verify({**content, "regions": [(0.2, 0.2, 1, 0)], name: value})
 
+    def test_control_rows_of_three(self) -> None:
+        """None: rows as wide as their cells are taken."""
+        assert verify(self.Plain([(0, 1, 2), (0, 2, 3)])).ok
+
     def test_ragged_pair(self) -> None:
         with pytest.raises(ShapeError, match="second array"):
             given_mesh((np.zeros((3, 2)), [(0, 1, 2), (1,)]))
 
 
+@pytest.mark.obligation("A1", "what exactmesh made is verified as what it promises", method="named cases")
 class TestOwn:
     """What exactmesh made is verified as what it promises, its domain with it; a fault in it is found."""
 
@@ -195,7 +203,8 @@ class TestOwn:
         assert given.labels is not None
         assert verify(mesh, labels=np.arange(len(given.labels))).verdict(Property.REGIONS) is Verdict.FAILS
 
-    def test_another_domain_is_not_covered(self) -> None:
+    def test_control_another_domain_is_not_covered(self) -> None:
+        """Another domain, which the mesh does not cover."""
         mesh = constrained_delaunay(FRAME)
         square = PSLG.from_rings([[(0, 0), (4, 0), (4, 4), (0, 4)]])
         assert verify(mesh, domain=square).verdict(Property.COVERS_DOMAIN) is Verdict.FAILS
@@ -215,6 +224,9 @@ class TestOwn:
             verify(io.Mesh(POINTS))
 
 
+@pytest.mark.obligation(
+    "A1", "of Triangle's dictionaries, segments, holes and regions are the domain", method="named cases"
+)
 class TestDictionaries:
     """Triangle's dictionaries: segments, holes and regions are the domain."""
 
@@ -238,7 +250,8 @@ class TestDictionaries:
         wrong = {**result, "triangle_attributes": result["triangle_attributes"] + 1}
         assert verify(wrong).verdict(Property.REGIONS) is Verdict.FAILS
 
-    def test_a_lost_triangle_is_missed(self) -> None:
+    def test_control_a_lost_triangle_is_missed(self) -> None:
+        """A triangle taken away."""
         result = exactmesh.triangle.triangulate(self.PLAIN, "p")
         assert not verify({**result, "triangles": result["triangles"][1:]}).ok
 
@@ -250,6 +263,7 @@ class TestDictionaries:
             ).ok
 
 
+@pytest.mark.obligation("A1", "scipy's Delaunay is checked for being Delaunay", method="named cases")
 class TestScipy:
     """scipy's Delaunay is checked for what it says to be: near the origin it mostly is, far from it it is not."""
 
@@ -258,6 +272,9 @@ class TestScipy:
         assert sound.ok
         assert sound.claims == DELAUNAY_TRIANGULATION
         assert verify(Delaunay(POINTS)) == verify(POINTS, Delaunay(POINTS).simplices)
+
+    def test_control_far_from_the_origin(self) -> None:
+        """scipy's own mesh of points far from the origin, which leaves most of them out."""
         assert not verify(Delaunay(np.random.default_rng(0).random((300, 2)) + 1e6)).ok
 
     def test_other_sorts(self) -> None:
@@ -291,6 +308,7 @@ class TestMatplotlib:
         assert corners(given_mesh(mesh)) == expected(POINTS, mesh.triangles[~mask])
 
 
+@pytest.mark.obligation("A1", "shapely's polygons are cells, vertices at one position are one", method="named cases")
 class TestShapely:
     """Polygons are the cells, vertices at one position are one; whatever else is refused, and named by its place."""
 
@@ -333,11 +351,15 @@ class TestShapely:
             (shapely.Polygon(), "of -1 sides|is neither"),
         ],
     )
-    def test_what_is_no_cell_is_refused(self, mesh: object, fault: str) -> None:
+    def test_control_what_is_no_cell_is_refused(self, mesh: object, fault: str) -> None:
+        """Geometries that are no triangles and no quadrilaterals."""
         with pytest.raises(AdapterError, match=fault):
             verify(mesh)
 
 
+@pytest.mark.obligation(
+    "A1", "meshio's blocks are joined, lines are segments, planes of space are planes", method="named cases"
+)
 class TestMeshio:
     """Blocks of cells are joined, nodes beyond the corners and unused points do no harm, lines are segments."""
 
@@ -353,7 +375,8 @@ class TestMeshio:
             set(ADMISSIBLE_MESH) < set(report.claims) == {*ADMISSIBLE_MESH, Property.SEGMENTS_PRESENT, Property.CONVEX}
         )
 
-    def test_a_line_across_is_missing(self) -> None:
+    def test_control_a_line_across_is_missing(self) -> None:
+        """A line across a quadrilateral, which is no edge."""
         report = verify(meshio.Mesh(SQUARE, [("quad", QUADS), ("line", [[0, 2]])]))
         assert report.verdict(Property.SEGMENTS_PRESENT) is Verdict.FAILS
 
@@ -403,6 +426,7 @@ class TestMeshio:
         assert verify(lost, domain=mesh.domain).verdict(Property.COVERS_DOMAIN) is Verdict.FAILS
 
 
+@pytest.mark.obligation("A1", "meshes of scikit-fem are admissible, those of space are refused", method="named cases")
 class TestScikitFem:
     """Meshes of scikit-fem, refined or of second order, are admissible; cells of space are refused."""
 
@@ -415,7 +439,8 @@ class TestScikitFem:
         assert report.verdict(Property.COVERS_HULL) is Verdict.HOLDS
         assert corners(given_mesh(mesh)) == expected(mesh.p.T, mesh.t.T)
 
-    def test_a_pulled_vertex(self) -> None:
+    def test_control_a_pulled_vertex(self) -> None:
+        """A vertex pulled over its neighbours."""
         mesh = skfem.MeshQuad().refined(2)
         points = mesh.p.copy()
         inner = int(np.flatnonzero(((points > 0) & (points < 1)).all(axis=0))[0])

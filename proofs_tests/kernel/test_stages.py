@@ -219,9 +219,7 @@ class TestGridOfFour:
         return [oracle.parity(p) * lifted[0][p[0]] * lifted[1][p[1]] * lifted[2][p[2]] for p in permutations(range(3))]
 
 
-@pytest.mark.obligation(
-    "K7", "a loop tallies every call, under the stage that decided it", method="named cases", control_in="mutants"
-)
+@pytest.mark.obligation("K7", "a loop tallies every call, under the stage that decided it", method="named cases")
 class TestTally:
     """One call, one more of one stage, in the predicate's own row; ties that are broken count as incircle."""
 
@@ -253,6 +251,12 @@ class TestTally:
             assert broken[0, 0] == (calls if adaptive is incircle_perturbed_adaptive and stage else 0)
             broken[0, 0] = 0
             assert not broken.any()
+
+    @pytest.mark.parametrize(("adaptive", "n", "row"), [(orient2d_adaptive, 3, 1), (incircle_adaptive, 4, 0)])
+    def test_control_another_row(self, adaptive: Adaptive, n: int, row: int) -> None:
+        """Calls that are looked for in the row of the other predicate."""
+        with pytest.raises(AssertionError):
+            self.test_every_call(adaptive, n, row)
 
 
 @pytest.mark.obligation(

@@ -247,9 +247,7 @@ def column(height: int) -> list[Pair]:
 
 
 @inlined
-@pytest.mark.obligation(
-    "M5", "scratch has room for a cavity with vertices that come twice", method="named cases", control_in="mutants"
-)
+@pytest.mark.obligation("M5", "scratch has room for a cavity with vertices that come twice", method="named cases")
 class TestRoomForCavities:
     """A segment below a column of vertices crosses two edges of each, and the polygon above it has every vertex twice:
     the longest that there can be. Filled by search or by chance, it fits, and is constrained Delaunay."""
@@ -276,6 +274,24 @@ class TestRoomForCavities:
         if height < 5:
             expected = constrained_oracle.constrained_triangles(exact, [(0, 1)])
             assert canonical_triangles(mesh.triangles.tolist()) == expected
+
+    @pytest.mark.parametrize("height", [3, 20])
+    def test_control_a_vertex_less(self, height: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Scratch that is one vertex shorter than the polygon."""
+        plane_of = CONSTRAIN.plane_of
+
+        def cut(room: int) -> None:
+            monkeypatch.setattr(
+                CONSTRAIN,
+                "plane_of",
+                lambda built: (plane := plane_of(built))._replace(left=plane.left[:room], right=plane.right[:room]),
+            )
+
+        cut(2 * height)
+        assert len(constrained_delaunay(PSLG(column(height), [(0, 1)]), carve=False).triangles)
+        cut(2 * height - 1)
+        with pytest.raises(IndexError):
+            constrained_delaunay(PSLG(column(height), [(0, 1)]), carve=False)
 
     @pytest.mark.parametrize("seed", range(6))
     def test_no_overflow_is_told(self, seed: int) -> None:

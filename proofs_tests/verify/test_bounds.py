@@ -28,7 +28,7 @@ def the_one(points: list[Place], property_: Property, **bounds: float) -> Violat
     return violation
 
 
-@pytest.mark.obligation("V2", "a violated bound is told with both numbers", method="named cases", control_in="mutants")
+@pytest.mark.obligation("V3", "a violated bound is told with both numbers", method="named cases", control_in="mutants")
 class TestMessages:
     """The area or the angle, its corner, the bound; and that it is rounding-sized, where it is."""
 
@@ -61,7 +61,7 @@ class TestMessages:
         assert violation.message.endswith(f" has an angle of {angle} degrees at 0 (0.0, 0.0), more than 90{tail}")
 
 
-@pytest.mark.obligation("V2", "what is no bound is named, what is none at all does not bind", method="named cases")
+@pytest.mark.obligation("V1", "what is no bound is named, what is none at all does not bind", method="named cases")
 class TestNoBounds:
     """An area that is not positive, in an array, binds nothing; NaN is refused, and its triangles are listed."""
 

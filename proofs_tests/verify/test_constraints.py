@@ -227,3 +227,14 @@ class TestEvenEnds:
             assert told == {(v,): name.format(v, places[v][0]) for v in odd}
             assert len(caught.value.faults) == len(odd)
         assert {0, 2} <= seen
+
+    def test_control_the_ring_closed(self) -> None:
+        """A segment of a ring left out: with it there is nothing to refuse."""
+        places, ring = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]), np.array([(0, 1), (1, 2), (2, 0)], dtype=np.intp)
+        for segments in (ring, ring[:2]):
+            outline = Outline(places, segments, *(np.empty((0, 2)),) * 2, *(np.empty(0),) * 2, True)
+            if len(segments) == 3:
+                require_even_ends(outline, np.arange(3))
+                continue
+            with pytest.raises(PSLGError):
+                require_even_ends(outline, np.arange(3))

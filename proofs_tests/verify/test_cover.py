@@ -148,7 +148,7 @@ def faults(shown: Picture, findings: Mapping[Property, Finding]) -> list[str]:
     return found
 
 
-@pytest.mark.obligation("V2", "what a witness says of a domain is true, and all is told", method="differential")
+@pytest.mark.obligation("V3", "what a witness says of a domain is true, and all is told", method="differential")
 class TestWitnesses:
     """Each sentence about segments, faces, holes and points of a domain is so in fractions, with its numbers, corners
     and positions; as many holes, faces and points are named as there are; and a count that may be too small says so."""

@@ -15,7 +15,7 @@ QUADS = index_quads([(0, 1, 2, 3), (-1, 1, 2, 3), (3, 1, 2, 3), (0, 1, 2, 7)])
 
 
 @pytest.mark.obligation(
-    "V2",
+    "V3",
     "an unreadable cell is told with its row, its corners, and what is wrong",
     method="named cases",
     control_in="mutants",
@@ -66,9 +66,9 @@ def violation(cells: tuple[int, ...], vertices: tuple[int, ...] = ()) -> Violati
 
 
 @pytest.mark.obligation(
-    "V2",
+    "V3",
     "what is cut out is the rows that were named, whatever their indices are",
-    method="exhaustive",
+    method="enumeration",
     control_in="mutants",
 )
 class TestCutOut:

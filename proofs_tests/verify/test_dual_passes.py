@@ -123,7 +123,7 @@ def both(first: int, second: int) -> int:
 
 @pytest.mark.obligation(
     "V1", "a vertex is a circumcentre iff both coordinates are; a ridge's two ends are, in one of the two orders",
-    method="exhaustive", control_in="mutants",
+    method="enumeration", control_in="mutants",
 )  # fmt: skip
 class TestMatching:
     """All combinations of what is known of the coordinates, and of two vertices and two triangles."""

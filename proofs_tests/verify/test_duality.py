@@ -285,6 +285,13 @@ class TestSeverity:
         assert seen == {Severity.ROUNDING, Severity.WRONG}
         assert equal > 0 or bound not in (0.25, 0.5)
 
+    @pytest.mark.parametrize(("bound", "expected"), [(0.0, Severity.WRONG), (1.0, Severity.ROUNDING)])
+    def test_control_other_bounds(self, bound: float, expected: Severity, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A bound of nothing, and one that no vertex exceeds."""
+        monkeypatch.setattr(duality, "MEASURE_BOUND", bound)
+        check = check_of([(0.0, 0.0), (4.0, 0.0), (0.0, 2.0)], [(2.0, 1.0 + 2.0**-50)])
+        assert check._severity(0, 0) is expected
+
     def test_wrong_first(self) -> None:
         """Of many, what is wrong is told before what is rounding-sized, and no more than there is room for."""
         points = np.random.default_rng(8).random((90, 2))

@@ -107,7 +107,7 @@ class Rim:
         return told and (a, b) in self.edges and self.listed[a, b] == self.triangles[row]
 
 
-@pytest.mark.obligation("V2", "of the hull all is told that it lacks, and nothing else", method="differential")
+@pytest.mark.obligation("V3", "of the hull all is told that it lacks, and nothing else", method="differential")
 class TestHull:
     """A part of a triangulation is told to cover the hull iff their areas are the same; otherwise where its boundary
     turns clockwise, with the corners, their determinant and its sign; or, where it is convex, the points outside of it;
@@ -167,7 +167,7 @@ class TestTurned:
         assert turned(triangles, upright) is triangles
 
 
-@pytest.mark.obligation("V2", "of each angle it is told how wide it is, and where", method="named cases")
+@pytest.mark.obligation("V3", "of each angle it is told how wide it is, and where", method="named cases")
 class TestAngles:
     """A triangle that is not acute is told to have an angle of exactly or of more than 90 degrees, at its corner, with
     the scalar product there; or to have no area."""

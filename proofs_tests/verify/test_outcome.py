@@ -66,7 +66,7 @@ class TestRootAbove:
         assert all(self._is_right(root_above(Fraction(n)), Fraction(n)) for n in range(1000))
 
 
-@pytest.mark.obligation("V2", "reports that say the same are equal", method="named cases")
+@pytest.mark.obligation("V3", "reports that say the same are equal", method="named cases")
 class TestEquality:
     """What repeats the input (corners, positions, the mesh itself) makes no difference and is not printed."""
 
@@ -103,7 +103,7 @@ class TestEquality:
         assert one.mesh is not other.mesh
 
 
-@pytest.mark.obligation("V2", "a violation is local iff its property is", method="enumeration", control_in="mutants")
+@pytest.mark.obligation("V3", "a violation is local iff its property is", method="enumeration", control_in="mutants")
 class TestLocal:
     """A truth value, not a method: false as well."""
 
@@ -114,7 +114,7 @@ class TestLocal:
         assert {field.name for field in fields(Violation)} >= {"property", "kind"}
 
 
-@pytest.mark.obligation("V2", "the same report makes the same text, in JSON and nothing else", method="named cases")
+@pytest.mark.obligation("V3", "the same report makes the same text, in JSON and nothing else", method="named cases")
 class TestText:
     """Indented by two; a number that JSON does not know is refused, and so is none written."""
 

@@ -242,7 +242,7 @@ class TestSweep:
 
 
 @pytest.mark.obligation(
-    "V1", "two edges cross iff each separates the ends of the other", method="exhaustive", control_in="mutants"
+    "V1", "two edges cross iff each separates the ends of the other", method="enumeration", control_in="mutants"
 )
 class TestCross:
     """All pairs of edges, of which one at least is loose; touching is not crossing, and nothing crosses no edge."""

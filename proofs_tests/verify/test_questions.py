@@ -25,7 +25,7 @@ ON_CLAIM = {Property.GABRIEL, Property.CIRCUMCENTRES_INSIDE, Property.REGION_ARE
 
 
 @pytest.mark.obligation(
-    "V2", "a property is asked iff what was given has a meaning for it", method="exhaustive", control_in="mutants"
+    "V1", "a property is asked iff what was given has a meaning for it", method="exhaustive", control_in="mutants"
 )
 class TestAsked:
     """With and without segments, a domain, labels, quadrilaterals, and all sets of bounds."""
@@ -56,7 +56,7 @@ class TestAsked:
 
 
 @pytest.mark.obligation(
-    "V2", "claims are those that were named, and every bound", method="named cases", control_in="mutants"
+    "V1", "claims are those that were named, and every bound", method="named cases", control_in="mutants"
 )
 class TestClaims:
     """In the order of the definitions, however they are named; by default what is usual for what was given."""
@@ -99,7 +99,7 @@ class TestClaims:
             claimed_properties(claims, asked)
 
 
-@pytest.mark.obligation("V2", "what is given goes before what a mesh brings along", method="exhaustive")
+@pytest.mark.obligation("A1", "what is given goes before what a mesh brings along", method="exhaustive")
 class TestGiven:
     """Segments, domain, labels and orientation: each from the call, or else from the mesh; but labels of a mesh belong
     to its own domain."""
@@ -140,7 +140,7 @@ class TestGiven:
         assert (found["min_angle"], found["size"], found["within"]) == (20.0, 0.5, np.inf)
 
 
-@pytest.mark.obligation("V2", "there is a label for each cell", method="exhaustive", control_in="mutants")
+@pytest.mark.obligation("V1", "there is a label for each cell", method="named cases", control_in="mutants")
 class TestLabels:
     """With m triangles and k quadrilaterals as many as m + k, and no other number."""
 

@@ -28,7 +28,7 @@ def records() -> list[type]:
     ]
 
 
-@pytest.mark.obligation("V2", "what was found cannot be changed afterwards", method="enumeration", control_in="mutants")
+@pytest.mark.obligation("G2", "what was found cannot be changed afterwards", method="enumeration", control_in="mutants")
 class TestRecords:
     """No attribute of a data class of the verifier can be set, and none can be added. Those that hold arrays of the
     input are equal to nothing but themselves, and do not print them."""

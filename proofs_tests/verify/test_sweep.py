@@ -127,7 +127,7 @@ class TestSwept:
 
 
 @pytest.mark.obligation(
-    "V1", "two neighbours of the status are tested rightly", method="exhaustive", control_in="mutants"
+    "V1", "two neighbours of the status are tested rightly", method="enumeration", control_in="mutants"
 )
 class TestNeighbours:
     """All pairs of edges that one vertical line meets, none beginning where the other ends: they meet improperly iff

@@ -109,7 +109,7 @@ def random_cells(random: Random) -> tuple[Points, Cells, Cells]:
 
 
 @pytest.mark.obligation(
-    "V2",
+    "V3",
     "a witness is minimal: its cells violate the property by themselves, and without any one of them do not",
     method="differential",
 )

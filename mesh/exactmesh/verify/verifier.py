@@ -150,8 +150,9 @@ def verify(
             has no meaning for quadrilaterals.
         AdapterError, FileFormatError: the mesh is none, see :func:`exactmesh.adapters.given_mesh`.
 
-    O(n + m) for a Delaunay triangulation; O((n + m + s) log(n + m + s)) in general. Reference [Mehlhorn 1999],
-    [Devillers 1998].
+    Of a Delaunay triangulation 4 m orientations, one a vertex of the hull, and one circle an inner edge are asked for,
+    and nothing is sorted but the edges at vertices of large degree; in general, edges and points are sorted and swept.
+    Reference [Mehlhorn 1999], [Devillers 1998].
 
     >>> from exactmesh.verify import Property, verify
     >>> points = [(0, 0), (3, 0), (3, 1), (0, 1)]
