@@ -195,7 +195,7 @@ class TestWitnesses:
                     noticed += 1
 
 
-def trial_of(shown: Picture) -> tuple[Trial, IndexArray]:
+def trial_of(shown: Picture, bits: int) -> tuple[Trial, IndexArray]:
     """What the verifier makes of a picture, with all unused points; these."""
     domain = domain_of(shown)
     constraints = constraints_of(None, domain, None, len(shown.triangles))
@@ -208,10 +208,7 @@ def trial_of(shown: Picture) -> tuple[Trial, IndexArray]:
     shapes = classified(mesh.context, local, turns_of(mesh.context, local))
     unused, marks = unused_points(links), np.zeros(len(links.slots), dtype=np.uint8)
     tiled = Tiled(mesh, shapes, links, boundary_of(links), unused, marks)
-    return tried(tiled, constraints.outline, positions, unused, BITS, None), unused
-
-
-BITS = IN_DOMAIN | ODD | CONSTRAINED
+    return tried(tiled, constraints.outline, positions, unused, bits, None), unused
 
 
 @pytest.mark.obligation(
@@ -222,25 +219,26 @@ class TestSurveys:
     nothing else is; points of the domain at no corner, unused points and holes' points are told to be covered iff they
     lie in the closed union; a sweep with the segments inside tells which holes' points lie on segments."""
 
-    @pytest.mark.parametrize("seed", range(12))
-    def test_random(self, seed: int) -> None:
-        random = Random(1000 + seed)
+    @pytest.mark.parametrize("own", [0, CONSTRAINED])
+    @pytest.mark.parametrize("seed", range(8))
+    def test_random(self, seed: int, own: int) -> None:
+        random, bits = Random(1000 * (1 + own) + seed), IN_DOMAIN | ODD | own
         for _ in range(20):
             shown = picture(random)
-            found, unused = trial_of(shown)
+            found, unused = trial_of(shown, bits)
             if found.segments.verdict is not Verdict.HOLDS:
                 continue
             links, marks = found.tiled.links, found.tiled.marks.copy()
             for edge in shown.edges:
                 slot, count = edge_slot(links, *edge), shown.segments_at(edge)
-                assert marks[slot] == (count > 0) * (IN_DOMAIN | CONSTRAINED) | (count % 2) * ODD, (shown, edge)
+                assert marks[slot] == (count > 0) * (IN_DOMAIN | own) | (count % 2) * ODD, (shown, edge)
                 marks[slot] = 0
             assert not marks.any()
-            inner = surveyed(found.tiled.mesh, links, found.tiled.marks, found.placed, unused, BITS, inner=True)
+            inner = surveyed(found.tiled.mesh, links, found.tiled.marks, found.placed, unused, bits, inner=True)
             for survey in (found.survey, inner):
                 if survey is not None:
                     self.located(shown, survey, unused)
-            without = surveyed(found.tiled.mesh, links, found.tiled.marks, None, unused, BITS)
+            without = surveyed(found.tiled.mesh, links, found.tiled.marks, None, unused, bits)
             assert without.unused_covered.tolist() == inner.unused_covered.tolist()
             holes = oracles.rationals(shown.holes)
             on = [any(oracles.on_segment(p, *s) for s in shown.lines) for p in holes]
