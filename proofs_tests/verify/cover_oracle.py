@@ -149,6 +149,19 @@ class Picture:
         return len({face for inside, covered, face in rows if inside and not covered})
 
     @cached_property
+    def wrong_parities(self) -> int:
+        """Edges within the triangles that an odd number of segments runs along, and edges of the boundary with an even
+        one."""
+        return sum((count == 1) is not (self.segments_at(edge) % 2 == 1) for edge, count in self.edges.items())
+
+    @cached_property
+    def is_plain(self) -> bool:
+        """Whether there is nothing to locate: no holes, no segment or point of the domain and no point of the mesh that
+        is not on edges or at corners."""
+        at = all(p in self.corners for p in [*self.own, *self.exact]) and not self.holes
+        return at and all(self.along(domain_oracle.middle(*part), s) for s in self.lines for part in self.parts(s))
+
+    @cached_property
     def missing_segments(self) -> int:
         """How many segments lack something within the triangles; without any, where they bound a part of the domain."""
         return sum(map(self.lacks_a_part_within, self.lines)) or sum(map(self.lacks_a_part_outside, self.lines))

@@ -338,12 +338,12 @@ class TestMoved:
         assert not verify(square, [(0, 1, 2), (0, 2, 3)], domain=pair, within=1, claims=COVER).ok
 
 
-def damned(within: float | None) -> Report:
+def damned(within: float | None, more_holes: Points = ()) -> Report:
     """A square lake with a dam in it, within a square: the shore is displaced a bit, the dam not there."""
     outer = [(0.0, 0.0), (12.0, 0.0), (12.0, 12.0), (0.0, 12.0)]
     shore = [(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0)]
     rings = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (4, 6)]
-    domain = PSLG([*outer, *shore], rings, holes=[(7.0, 5.0), (5.0, 7.0)])
+    domain = PSLG([*outer, *shore], rings, holes=[(7.0, 5.0), (5.0, 7.0), *more_holes])
     points = np.array([*outer, *shore, (6.0, 4.0625), (6.0, 7.9375)])
     ring = [
         (0, 1, 8),

@@ -77,6 +77,11 @@ class Trial:
         found = (self.segments, self.findings[Property.COVERS_DOMAIN], self.findings[Property.DOMAIN_POINTS])
         return sum(finding.verdict is not Verdict.HOLDS for finding in found), sum(finding.count for finding in found)
 
+    @property
+    def holds(self) -> bool:
+        """Whether there is nothing to find fault with."""
+        return self.faults == (0, 0)
+
     def noted(self, note: str) -> "Trial":
         """Return it with a note to what fails."""
 
@@ -100,14 +105,13 @@ def tried(
         trial = _trial(tiled, placed, free, bits)
     else:
         trial = _displaced(tiled, outline, positions, free, bits, within)
-    if trial.faults[0] == 0 or tiled.boundary is None:
+    if trial.holds or tiled.boundary is None:
         return trial
     farther = max(float(np.abs(tiled.mesh.points).max(initial=0.0)) * _ROUNDING, _FARTHER * (within or 0.0))
-    unmarked = replace(tiled, marks=tiled.marks & np.uint8(~bits & 0xFF))
-    other = _displaced(unmarked, outline, positions, free, bits, farther)
+    other = _displaced(replace(tiled, marks=np.zeros_like(tiled.marks)), outline, positions, free, bits, farther)
     distance = other.segments.distance
     return (
-        trial if other.faults[0] or distance is None else trial.noted(f"within={digits_above(distance)} it would hold")
+        trial.noted(f"within={digits_above(distance)} it would hold") if other.holds and distance is not None else trial
     )
 
 
@@ -120,7 +124,7 @@ def _displaced(
         trial = _trial(replace(tiled, marks=written), placed, free, bits)
         if best is None or trial.faults < best.faults:
             best = trial
-        if best.faults[0] == 0 or tiled.boundary is None:
+        if best.holds:
             break
     assert best is not None  # there is always one
     tiled.marks[:] = best.tiled.marks
@@ -148,6 +152,11 @@ def _survey(tiled: Tiled, placed: Placed, free: IndexArray, bits: int) -> Survey
     return surveyed(tiled.mesh, tiled.links, tiled.marks, placed, free, bits)
 
 
+def _inner_survey(tiled: Tiled, placed: Placed, bits: int) -> Survey:
+    """Sweep over the segments within the triangles as well."""
+    return surveyed(tiled.mesh, tiled.links, tiled.marks, placed, tiled.unused[:0], bits, inner=True)
+
+
 def _of_domain(
     tiled: Tiled, placed: Placed, survey: Survey | None, bits: int
 ) -> tuple[dict[Property, Finding], Finding]:
@@ -156,13 +165,12 @@ def _of_domain(
     if tiled.boundary is None:
         segments = without_admissible() if placed.absent.size else segments
     else:
-        if survey is not None and placed.absent.size:
+        if survey is not None:
             segments = check_inner_parts(tiled.mesh, tiled.links, tiled.marks, placed, survey, bits)
         if segments.verdict is Verdict.HOLDS:
             cover = _cover(tiled, placed, survey, bits)
-            if survey is not None and placed.absent.size and cover.verdict is Verdict.FAILS:
-                inner = surveyed(tiled.mesh, tiled.links, tiled.marks, placed, tiled.unused[:0], bits, inner=True)
-                segments = check_outer_parts(tiled.marks, placed, inner)
+            if placed.absent.size and cover.verdict is Verdict.FAILS:
+                segments = check_outer_parts(tiled.marks, placed, _inner_survey(tiled, placed, bits))
         else:
             cover = Finding(Verdict.UNDECIDED, because=(Property.SEGMENTS_PRESENT,))
     findings = {
@@ -175,11 +183,9 @@ def _of_domain(
 
 def _cover(tiled: Tiled, placed: Placed, survey: Survey | None, bits: int) -> Finding:
     """COVERS_DOMAIN. A hole's point in the union may lie on a segment there, which only a sweep over those tells."""
-    mesh, links, marks = tiled.mesh, tiled.links, tiled.marks
     if survey is not None and survey.faces.covered(survey.hole_sides[survey.hole_free]).any():
-        inner = surveyed(mesh, links, marks, placed, tiled.unused[:0], bits, inner=True)
-        survey = replace(survey, hole_free=survey.hole_free & inner.hole_free)
-    return check_cover(mesh, links, marks, placed, survey)
+        survey = replace(survey, hole_free=survey.hole_free & _inner_survey(tiled, placed, bits).hole_free)
+    return check_cover(tiled.mesh, tiled.links, tiled.marks, placed, survey)
 
 
 def _domain_points(tiled: Tiled, placed: Placed, survey: Survey | None, cover: Finding) -> Finding:
