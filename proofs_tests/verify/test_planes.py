@@ -158,7 +158,7 @@ class TestSweep:
     def test_control_all_outcomes(self) -> None:
         """Vertices on rigid edges, and crossings; without either parities that are defined, and others."""
         seen = Counter[tuple[int, bool]]()
-        for seed in range(80):
+        for seed in range(2 * len(MESHES)):
             drawing = drawn(seed, MESHES[seed % len(MESHES)])
             seen[swept(drawing, 3, any_loose=True)[0], drawing.is_even] += 1
         assert min(seen[outcome, even] for outcome in (WHOLE, CROSSING, CUT) for even in (False, True)) > 0
