@@ -56,8 +56,7 @@ def check_constraints(
     """
     tiled = Tiled(mesh, shapes, links, boundary, unused, marks)
     own, outline = constraints.segments, constraints.outline
-    absent = np.empty(0, dtype=np.intp) if own is None else _absent(tiled, own)
-    segments = finding_of(absent, lambda i: _missing(mesh, own, i)) if own is not None else Finding(Verdict.HOLDS)
+    segments = Finding(Verdict.HOLDS) if own is None else _present(tiled, own)
     if boundary is None and segments.verdict is Verdict.FAILS:
         segments = without_admissible()
     free = _free(tiled)
@@ -99,9 +98,8 @@ def _region_areas(tiled: Tiled, outline: Outline, positions: FloatArray) -> Find
 
 
 def _regions(tiled: Tiled, labels: FloatArray, outline: Outline | None, positions: FloatArray) -> Finding:
-    r = 0 if outline is None else len(outline.regions)
     attributes = np.empty(0) if outline is None else outline.attributes
-    seeds = positions[len(positions) - r :]
+    seeds = positions[len(positions) - len(attributes) :]
     cells = upright_cells(tiled.mesh, tiled.shapes)
     return check_labels(tiled.mesh, tiled.links, cells, tiled.marks, labels, seeds, attributes)
 
@@ -113,17 +111,17 @@ def _missing_properties(boundary: Boundary | None, segments: Finding) -> tuple[P
     return tuple(missing)
 
 
-def _absent(tiled: Tiled, segments: Integers) -> IndexArray:
-    """Return the segments of the mesh that are no chain; the edges of the others are marked."""
+def _present(tiled: Tiled, segments: Integers) -> Finding:
+    """Find the segments of the mesh that are no chain; mark the edges of the others."""
     n = len(tiled.mesh.points)
     valid = ((segments >= 0) & (segments < n)).all(axis=1)
     ends = np.full(segments.shape, -1, dtype=np.intp)
     ends[valid] = segments[valid]
-    return np.flatnonzero(~chained(tiled.mesh, tiled.links, ends, tiled.marks, CONSTRAINED))
+    absent = np.flatnonzero(~chained(tiled.mesh, tiled.links, ends, tiled.marks, CONSTRAINED))
+    return finding_of(absent, lambda i: _missing(tiled.mesh, segments, i))
 
 
-def _missing(mesh: Mesh, segments: Integers | None, i: int) -> Violation:
-    assert segments is not None
+def _missing(mesh: Mesh, segments: Integers, i: int) -> Violation:
     a, b = (int(v) for v in segments[i])
     if not (0 <= a < len(mesh.points) and 0 <= b < len(mesh.points)):
         message = f"segment {i} ({a}, {b}) has an index outside 0 .. {len(mesh.points) - 1}"

@@ -254,18 +254,17 @@ def settle(k: Context, p: Plane, status: Status, v: int, e: int) -> int:
     """Look at the sides of the edges that began at v, e one of them, from below to above."""
     while status.below[e] != NIL and p.low[status.below[e]] == v:
         e = status.below[e]
+    unite(p, status.below[e], e)
+    if cross(k, p, status.below[e], e):
+        return CROSSING
     while e != NIL and p.low[e] == v:
         below, above = status.below[e], status.above[e]
         covered = 0 if below == NIL else p.inside[below]
         p.inside[e] = covered if p.sort[e] == LOOSE or p.sort[e] == INNER else 2 - p.sort[e]
         p.parity[e] = p.odd[e] ^ (0 if below == NIL else p.parity[below])
-        unite(p, below, e)
-        if cross(k, p, below, e):
+        unite(p, e, above)
+        if cross(k, p, e, above):
             return CROSSING
-        if above == NIL or p.low[above] != v:
-            unite(p, e, above)
-            if cross(k, p, e, above):
-                return CROSSING
         e = above
     return WHOLE
 

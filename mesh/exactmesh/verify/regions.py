@@ -4,6 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from exactkernel.jit import jit
+from exactkernel.rational import raise_if_interrupted
 from exactkernel.types import FloatArray, IntArray
 from exactmesh.verify.adjacency import neighbours_of, parts_of, rows_of_slots
 from exactmesh.verify.bounds import check_areas
@@ -22,26 +23,23 @@ _CHUNK = 1 << 18  # vertices between two looks at Ctrl-C
 
 
 @jit
-def differing(
-    links: Links,
-    marks: Marks,
-    labels: npt.NDArray[np.float64],
-    rows: IntArray,
-    across: IntArray,
-    differ: npt.NDArray[np.bool_],
-    v_begin: int,
-    v_end: int,
-) -> None:
-    """Write the row across each inner edge, at the slot that stands for it, and whether the labels differ there
-    although no segment does."""
+def fill_across(links: Links, rows: IntArray, across: IntArray, v_begin: int, v_end: int) -> None:
+    """Write the row across each inner edge, at the slot of its smaller end; -1 elsewhere."""
     for v in range(v_begin, v_end):
         for i in range(links.first[v], links.last[v]):
             b = links.slots[i] >> 32
             across[i] = -1
-            differ[i] = False
             if v < b and links.kinds[i] != BOUNDARY:
                 across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
-                differ[i] = marks[i] & (CONSTRAINED | IN_DOMAIN) == 0 and labels[rows[i]] != labels[across[i]]
+
+
+def _across(links: Links, rows: IntArray) -> IntArray:
+    """Return the row across each inner edge, at the slot of its smaller end; -1 elsewhere."""
+    across, n = np.empty(len(links.slots), dtype=np.int32), len(links.first)
+    for begin in range(0, n, _CHUNK):
+        fill_across(links, rows, across, begin, min(begin + _CHUNK, n))
+        raise_if_interrupted()
+    return across
 
 
 def check_labels(
@@ -65,11 +63,10 @@ def check_labels(
 
     O(m), and O(s log s) for s edges on segments where there are seeds.
     """
-    rows, across = rows_of_slots(links, *cells), np.empty(len(links.slots), dtype=np.int32)
-    differ = np.empty(len(links.slots), dtype=np.bool_)
-    for begin in range(0, len(mesh.points), _CHUNK):
-        differing(links, marks, labels, rows, across, differ, begin, min(begin + _CHUNK, len(mesh.points)))
-    slots = np.flatnonzero(differ)
+    rows = rows_of_slots(links, *cells)
+    across = _across(links, rows)
+    slots = np.flatnonzero((across >= 0) & (marks & (CONSTRAINED | IN_DOMAIN) == 0))
+    slots = slots[labels[rows[slots]] != labels[across[slots]]]
 
     def describe(slot: int) -> Violation:
         v, b, _ = (int(ends[0]) for ends in ends_of(links, np.array([slot])))
@@ -125,17 +122,6 @@ def _seeds(
     return finding_of(culprits, describe)
 
 
-@jit
-def fill_across(links: Links, rows: IntArray, across: IntArray, v_begin: int, v_end: int) -> None:
-    """Write the row across each inner edge, at the slot of its smaller end."""
-    for v in range(v_begin, v_end):
-        for i in range(links.first[v], links.last[v]):
-            b = links.slots[i] >> 32
-            across[i] = -1
-            if v < b and links.kinds[i] != BOUNDARY:
-                across[i] = rows[slot_of(links.slots, links.first[b], links.last[b], v)]
-
-
 def check_region_areas(
     mesh: Mesh, links: Links, triangles: IntArray, marks: Marks, seeds: FloatArray, areas: FloatArray
 ) -> Finding:
@@ -147,10 +133,8 @@ def check_region_areas(
     limited = np.flatnonzero(areas < np.inf)
     if not limited.size:
         return Finding(Verdict.HOLDS)
-    rows, across = rows_of_slots(links, triangles), np.empty(len(links.slots), dtype=np.int32)
-    for begin in range(0, len(mesh.points), _CHUNK):
-        fill_across(links, rows, across, begin, min(begin + _CHUNK, len(mesh.points)))
-    inside, _, at = _located(mesh, links, marks, rows, across, seeds[limited])
+    rows = rows_of_slots(links, triangles)
+    inside, _, at = _located(mesh, links, marks, rows, _across(links, rows), seeds[limited])
     part, count = parts_of(neighbours_of(links, triangles, rows, marks, CONSTRAINED | IN_DOMAIN))
     limits = np.full(count, np.inf)
     np.minimum.at(limits, part[at], areas[limited[inside]])
