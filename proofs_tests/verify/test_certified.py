@@ -117,3 +117,24 @@ class TestOtherThings:
         said = f"bounds of the certificate and those given differ: {', '.join(names)}"
         with pytest.raises(CertificateError, match=f"{said}$"):
             check_certificate(text, POINTS, HALVES, bounds={name: np.ones(2) for name in reversed(names)})
+
+
+@pytest.mark.obligation("V2", "a certificate can be read without its mesh", method="named cases", control_in="mutants")
+class TestReading:
+    """Whether all claims held, by which rule the domain is one, what was claimed: values, not methods."""
+
+    @pytest.mark.parametrize("rule", ["seeds", "even-odd", None])
+    def test_values(self, rule: str | None) -> None:
+        domain = None if rule is None else PSLG(POINTS[:4], RINGS, rule=rule)
+        for triangles, ok in ((HALVES, True), (HALVES[:1], False)):
+            read = read_certificate(verify(POINTS[:4], triangles, domain=domain, min_angle=20).to_json())
+            assert (read.ok, read.rule) == (ok, rule)
+            assert {"admissible", "min_angle"} <= {*read.claims}
+            assert read.bounds == {"min_angle": 20.0}
+            assert read.mesh["triangles"] == len(triangles)
+            assert read.answers()["min_angle"] == ("holds", 0)
+
+    def test_nothing_is_verified_unasked(self) -> None:
+        text = verify(POINTS[:4], HALVES).to_json()
+        assert check_certificate(text, POINTS[:4], HALVES).report is None
+        assert check_certificate(text, POINTS[:4], HALVES, again=True).report is not None
