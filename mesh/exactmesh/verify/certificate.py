@@ -285,7 +285,7 @@ def _verified_again(certificate: Certificate, mesh: CheckedMesh) -> Report:
     return verify(
         mesh.points,
         mesh.triangles,
-        quads=mesh.quads if len(mesh.quads) else None,
+        quads=mesh.quads,
         segments=mesh.segments,
         domain=_domain(mesh.domain),
         labels=mesh.labels,

@@ -210,7 +210,7 @@ def verify(
             min_angle=min_angle,
             max_angle=max_angle,
             max_area=max_area,
-            size=sizes,
+            size=sizes if callable(size) else size,
             within=within,
         ),
         orientation=chosen,
