@@ -10,7 +10,7 @@ from proofs_tests.differential.table import Table, sign
 from proofs_tests.differential.triangulating import Triangle
 
 from exactkernel import incircle_batch, orient2d_batch
-from exactkernel.types import FloatArray
+from exactkernel.types import FloatArray, IntArray
 from exactmesh import PSLG, Carve, constrained_delaunay, delaunay, verify
 from exactmesh.errors import CollinearPointsError, CrossingError, PSLGError, TooFewPointsError
 from exactmesh.strategies import Corrupted, PlainMesh
@@ -147,6 +147,10 @@ def _of_domain(graph: PSLG, table: Table, hull: set[Triangle], pieces: list[list
         yield "carving: an open outline, or an empty domain, is not refused"
         return
     yield from _of_triangles(mesh, table, inside, "the domain")
+    ends = mesh.representative[graph.segments]
+    segments = ends[(ends >= 0).all(axis=1) & (ends[:, 0] != ends[:, 1])]
+    for labels in (np.zeros(len(mesh.triangles)), mesh.triangles.min(axis=1).astype(np.float64)):
+        yield from _of_report(mesh.points, mesh.triangles, segments, labels)
 
 
 _COMPARED = {Verdict.HOLDS: True, Verdict.FAILS: False}
@@ -155,16 +159,20 @@ _COMPARED = {Verdict.HOLDS: True, Verdict.FAILS: False}
 def _of_mesh(mesh: PlainMesh | Corrupted) -> Iterator[str]:
     segments = mesh.segments if isinstance(mesh, Corrupted) else None
     labels = mesh.labels if isinstance(mesh, Corrupted) else None
-    report = verify(mesh.points, mesh.triangles, segments=segments, labels=labels)
+    yield from _of_report(mesh.points, mesh.triangles, segments, labels)
+
+
+def _of_report(
+    points: FloatArray, triangles: IntArray, segments: IntArray | None, labels: FloatArray | None
+) -> Iterator[str]:
+    report = verify(points, triangles, segments=segments, labels=labels)
     told = judging.answers(
-        mesh.points.tolist(),
-        mesh.triangles.tolist(),
+        points.tolist(),
+        triangles.tolist(),
         None if segments is None else segments.tolist(),
         None if labels is None else labels.tolist(),
     )
     for property_, answer in told.items():
-        if property_ not in report.findings:
-            continue
         verdict = report.verdict(property_)
         if verdict in _COMPARED and _COMPARED[verdict] is not answer:
             yield f"verify: {property_} {verdict}, by brute force {answer}"
