@@ -24,7 +24,8 @@ __all__ = ["AtherisUnavailableError", "Campaign", "Outcome", "require_atheris"]
 
 _STATUS = re.compile(r"^#(\d+)\s.*\bcov: (\d+) ft: (\d+) corp: (\d+)", re.MULTILINE)
 _RESTARTS = 20
-_LIMITS = ("-timeout=120", "-rss_limit_mb=4000", "-print_final_stats=1", "-max_len=4096")
+_LIMITS = ("-timeout=120", "-rss_limit_mb=4000", "-print_final_stats=1")
+_LENGTH = 4096
 
 
 class AtherisUnavailableError(ExactMeshError, ImportError):
@@ -84,7 +85,7 @@ class Campaign:
         for number, seed in enumerate(target.seeds()):
             (corpus / f"seed-{number}").write_bytes(seed)
         before = set(self.folder.glob(f"{target.name}-*.bin"))
-        start, executions, edges, kept = time.monotonic(), 0, 0, 0
+        start, executions, edges, kept, log = time.monotonic(), 0, 0, 0, ""
         for _ in range(_RESTARTS):
             left = seconds - (time.monotonic() - start)
             if left < 1:
@@ -96,6 +97,8 @@ class Campaign:
             executions += int(rows[-1][0])
             edges, kept = max(edges, int(rows[-1][1])), int(rows[-1][3])
         findings = tuple(sorted(set(self.folder.glob(f"{target.name}-*.bin")) - before))
+        if not (executions or findings):
+            raise RuntimeError(f"{target.name}: nothing was tried; libFuzzer says: {log[-1000:]}")
         return Outcome(target.name, executions, edges, kept, time.monotonic() - start, findings)
 
     def _run(self, target: Target, seconds: int, corpus: Path, tick: Callable[[], None]) -> str:
@@ -107,8 +110,9 @@ class Campaign:
             given = [
                 f"-max_total_time={seconds}",
                 f"-artifact_prefix={place}/",
-                f"-dict={words}",
+                f"-max_len={max(_LENGTH, *(2 * len(seed) for seed in target.seeds()))}",  # what is longer is cut off
                 *_LIMITS,
+                *([f"-dict={words}"] if words.stat().st_size else []),  # an empty one is an error
                 str(corpus),
             ]
             assert self._nursery.stdin is not None
