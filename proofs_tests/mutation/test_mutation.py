@@ -11,8 +11,10 @@ pytest.importorskip("cosmic_ray", reason="mutation testing needs cosmic-ray: pip
 
 from coverage import CoverageData
 from proofs_tests.mutation.campaign import Result
+from proofs_tests.mutation.command import BAR
 from proofs_tests.mutation.covering import Covering
 from proofs_tests.mutation.mutants import ROOT, Mutant, mutants_of, source_files
+from proofs_tests.mutation.page import Scores, name_of, page
 from proofs_tests.mutation.survivors import Survivors, described
 from proofs_tests.mutation.transplant import transplant
 
@@ -156,6 +158,36 @@ class TestSurvivors:
     def test_another_place_of_the_same_words_may_be_killed(self) -> None:
         survivors = Survivors({described(self.mutant): "why"})
         assert not survivors.refuted([Result(self.mutant, outcome, "") for outcome in ("survived", "killed")])
+
+
+@pytest.mark.obligation("X1", "the page tells of all files, and at least 95 % of the mutants killed", method="mutation")
+class TestPage:
+    """The last campaign met the bar in each room, and the page that tells of it adds up."""
+
+    def test_the_bar(self) -> None:
+        scores = Scores.told((ROOT / "docs" / "mutation.md").read_text(encoding="utf-8"))
+        files = {name_of(file): Path(file).parent for file in source_files() if next(mutants_of(file), None)}
+        assert set(scores.total) == {"all", *files}
+        for counts in (scores.total, scores.killed, scores.late, scores.same):
+            assert 2 * counts["all"] == counts.total()
+        assert scores.of("all") >= BAR
+        for room in set(files.values()):
+            names = [name for name, folder in files.items() if folder == room]
+            killed, others = (
+                sum(counts[name] for name in names) for counts in (scores.killed, scores.total - scores.same)
+            )
+            assert killed >= BAR * others, room
+
+    def test_control_a_page_below_the_bar(self) -> None:
+        """A page with a mutant that survived without a reason, beside one that was killed."""
+        mutants = list(mutants_of("kernel/exactkernel/types.py"))[:3]
+        outcomes = [
+            Result(m, outcome, "") for m, outcome in zip(mutants, ("killed", "survived", "survived"), strict=True)
+        ]
+        text = page(outcomes, Survivors({described(mutants[2]): "why"}))
+        scores = Scores.told(text)
+        assert (scores.total["all"], scores.killed["all"], scores.same["all"]) == (3, 1, 1)
+        assert scores.of("all") == 0.5 < BAR
 
 
 @pytest.mark.obligation("X1", "the tests of a mutant are those that run its line", method="named cases")
