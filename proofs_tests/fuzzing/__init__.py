@@ -16,7 +16,7 @@ and for public functions that take objects of others, and the target that reache
 ``geojson``                                             ``geojson`` (bytes), ``features`` (dictionaries)
 ``triangle.switches``                                   ``switches``
 ``triangle.dictionary``                                 ``dictionary``
-``verify.certificate`` ``certificate_file``             ``certificate``; what reports write: ``verify``
+``verify.certificate``                                  ``certificate``; what reports write: ``verify``
 ``conformance.inputs``: Python on the command line      ``literal``
 ``adapters.files`` ``adapters.streams``, through meshio ``foreign``
 ``adapters``: objects                                   ``objects`` ``shapes``
@@ -24,7 +24,8 @@ and for public functions that take objects of others, and the target that reache
 ``verify``                                              ``verify``
 ======================================================= ========================================================
 
-Not targets: ``conformance.channel`` and ``conformance.child`` unpickle what their own process wrote, and what the
+Not targets: ``certificate_file``, ``verify_file`` and the command, which call these readers with what a path says;
+``conformance.channel`` and ``conformance.child`` unpickle what their own process wrote, and what the
 caller pickled; ``verify.schema`` reads a file of the package; C libraries that meshio calls read HDF5 and netCDF.
 ``.v.node`` and ``.v.edge`` are written and never read, but as a ``.node`` and an ``.edge`` file, whose targets get
 them among their seeds.

@@ -189,10 +189,9 @@ class TestFaultsAreFound:
         assert tally(name, mini, bound_of(name, precision), axis)[2] > 0
 
     @pytest.mark.parametrize(("name", "factor"), [("orient2d", 1.75), ("diametral", 1.0), ("incircle", 1.5)])
-    def test_control_random_doubles_find_none(self, name: str, factor: float, record_property: Record) -> None:
-        """The unsound constants of above, tried on random doubles: nothing is noticed."""
+    def test_random_doubles_find_none(self, name: str, factor: float) -> None:
+        """Why all inputs of a small format are tried: random doubles do not notice the unsound constants of above."""
         tried, certified, lies = tally_of_doubles(name, factor * 2.0**-53, 20000)
-        record_property("cases", tried)
         assert certified > 0.99 * tried
         assert lies == 0
 

@@ -1,6 +1,7 @@
 """Debian's Chromium, driven by selenium: ``apt-get install chromium chromium-driver``."""
 
 import json
+import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -77,10 +78,11 @@ class Page:
 
 @contextmanager
 def browser() -> Iterator[Page]:
-    """Start a browser, or skip the test with the reason why there is none."""
+    """Start a browser, or skip the test with the reason why there is none: fail if EXACTMESH_REQUIRE_BROWSER=1."""
     chromium, chromedriver = shutil.which("chromium"), shutil.which("chromedriver")
     if chromium is None or chromedriver is None:
-        pytest.skip("no browser: apt-get install chromium chromium-driver")
+        missing = pytest.fail if os.environ.get("EXACTMESH_REQUIRE_BROWSER") == "1" else pytest.skip
+        missing("no browser: apt-get install chromium chromium-driver")
     pytest.importorskip("selenium")
     from selenium.webdriver import Chrome
     from selenium.webdriver.chrome.options import Options
