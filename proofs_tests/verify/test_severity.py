@@ -11,6 +11,7 @@ from proofs_tests import oracles
 from proofs_tests.kernel.shape_oracle import cosine_interval
 from proofs_tests.oracles import RationalPoint, Triangle
 
+from exactkernel.shape import angle_bound
 from exactkernel.types import FloatArray, IntArray
 from exactmesh import delaunay
 from exactmesh.verify import WITNESSES, Finding, Property, Severity, Verdict, grading, severity, text, verify
@@ -323,3 +324,36 @@ class TestReport:
         else:
             monkeypatch.setattr(text, "worst_first", lambda report: [*report.findings])
             assert not str(verify([*points, (9.0, 9.0)], triangles)).splitlines()[1].startswith("  ! ")
+
+
+@pytest.mark.obligation("V1", "an angle on the threshold is rounding-sized", method="named cases")
+class TestEquality:
+    """Of equality in the definition: an angle is beyond 90 degrees by just what counts as rounding,
+    D = C P in fractions. No length can be equal to its threshold."""
+
+    BOUND = severity.MEASURE_BOUND
+
+    def corners(self, third: tuple[float, float]) -> Severity:
+        points = np.array([(-1.0, 1.0), (0.0, 2.0), third])
+        return severity.angle_severity(points, [0, 1, 2], angle_bound(90.0), least=False)
+
+    def test_an_angle(self) -> None:
+        third = (-self.BOUND, -self.BOUND)
+        a, b, c = oracles.rationals([(-1.0, 1.0), (0.0, 2.0), third])
+        products = [(b[i] - a[i]) * (c[i] - a[i]) for i in range(2)]
+        assert -sum(products) == Fraction(self.BOUND) * sum(map(abs, products))
+        assert self.corners(third) is Severity.ROUNDING
+
+    def test_control_a_trifle_more(self) -> None:
+        """One coordinate is beyond by the least that there is."""
+        assert self.corners((-self.BOUND, math.nextafter(-self.BOUND, -1.0))) is Severity.WRONG
+        assert self.corners((-self.BOUND, math.nextafter(-self.BOUND, 0.0))) is Severity.ROUNDING
+
+    def test_no_length(self) -> None:
+        """Where |ab|^2 (1 - C) = l^2 (1 + C) the odd part of l is a multiple of every prime factor of 2^k - c, C being
+        c / 2^k; so it has more than 53 bits."""
+        bound = Fraction(self.BOUND)
+        primes = {3, 127, 307, 2857, 6529, 43691, 4432676798593}
+        assert math.prod(primes) * 3 == bound.denominator - bound.numerator
+        assert all(math.gcd(p, bound.denominator + bound.numerator) == 1 for p in primes)
+        assert math.prod(primes).bit_length() > 53

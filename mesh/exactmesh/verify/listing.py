@@ -27,21 +27,19 @@ class _Listing:
 
     @property
     def rare(self) -> int:
-        """The sign of the fewer cells; 0 where there are as many of both, or of one sort only."""
-        if not (self.clockwise and self.counterclockwise) or self.clockwise == self.counterclockwise:
-            return 0
-        return -1 if self.clockwise < self.counterclockwise else 1
+        """The sign of the fewer cells, of which there may be none; 0 where there are as many of both."""
+        return (self.clockwise > self.counterclockwise) - (self.clockwise < self.counterclockwise)
 
     def sign(self, row: int) -> int:
         """Return how a cell is listed; 0 where it has no orientation."""
         m = len(self.mesh.triangles)
         if row < m:
             return int(self.shapes.orientation[row])
-        return int(orientation_of_quads(self.shapes.turns[row - m : row - m + 1])[0])
+        return int(orientation_of_quads(self.shapes.turns[[row - m]])[0])
 
     def remarked(self, violation: Violation) -> Violation:
         """Return a violation of several cells that says which of them are listed the other way round than most."""
-        rows = [row for row in violation.triangles if self.sign(row) == self.rare]
+        rows = [row for row in violation.triangles if self.rare and self.sign(row) == self.rare]
         if len(violation.triangles) < 2 or not rows:
             return violation
         cells = f"{self.mesh.noun}{'s' if len(rows) > 1 else ''} {' and '.join(map(str, rows))}"
@@ -62,9 +60,7 @@ def with_listing(
     if orientation is Orientation.ANY and clockwise and counterclockwise:
         note = f"{clockwise} of {mesh.size} {mesh.noun}s are listed clockwise"
         told[Property.ORIENTATION] = replace(findings[Property.ORIENTATION], note=note)
-    if listing.rare:
-        for property_ in (Property.EDGE_MANIFOLD, Property.ADMISSIBLE):
-            finding = findings[property_]
-            violations = tuple(listing.remarked(violation) for violation in finding.violations)
-            told[property_] = replace(finding, violations=violations)
+    for property_ in (Property.EDGE_MANIFOLD, Property.ADMISSIBLE):
+        violations = tuple(listing.remarked(violation) for violation in findings[property_].violations)
+        told[property_] = replace(findings[property_], violations=violations)
     return told
