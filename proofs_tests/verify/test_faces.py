@@ -214,6 +214,47 @@ class TestPlane:
         assert len(seen) > 1
         record_property("cases", 15)
 
+    def test_more_pieces_than_twice_the_vertices(self) -> None:
+        """Lines in three directions through all places of a grid, each of which is cut nearly everywhere."""
+        n = 9
+        rows = [((float(x), float(y)), (x + 2.0, float(y))) for x in range(n - 2) for y in range(n)]
+        columns = [((float(x), 0.0), (float(x), n - 1.0)) for x in range(n)]
+        slanted = [((float(x), 0.0), (n - 1.0, n - 1.0 - x)) for x in range(n - 1)]
+        slanted += [((0.0, float(y)), (n - 1.0 - y, n - 1.0)) for y in range(1, n - 1)]
+        cut = Cut([(50.0, 50.0)], [], [*rows, *columns, *slanted], [], False)
+        faces = swept(cut)
+        assert faces.outcome == WHOLE
+        assert len(faces.edges) == 2 * n * (n - 1) + (n - 1) ** 2
+        assert faces.plane.size[0] > len(cut.loose) + 2 * n * n
+
+    def test_a_crossing_in_an_end(self) -> None:
+        """Where two segments cross, a third one ends; that is no corner of the mesh, whichever it has."""
+        points = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+        loose = [((3.0, 3.0), (9.0, 3.0)), ((2.0, 2.0), (4.0, 4.0)), ((2.0, 4.0), (4.0, 2.0))]
+        cut = Cut(points, [(0, 1, 2)], loose, [], True)
+        faces = swept(cut)
+        assert not faults(cut, faces)
+        assert faces.outcome == WHOLE
+
+    def test_a_crossing_beside_an_end(self) -> None:
+        """A segment ends on one of two others, where no double is nearer to their crossing."""
+        loose = [((0.0, 0.0), (3.0, 1.0)), ((1.0, 0.0), (1.0, 1.0)), ((1.0, 1.0 / 3.0), (5.0, -3.0))]
+        for turn in (False, True):
+            turned = [((b, a), (d, c)) for (a, b), (c, d) in loose] if turn else loose
+            cut = Cut([(50.0, 50.0)], [], turned, [], True)
+            faces = swept(cut)
+            assert faces.outcome == CROSSING
+            assert not faults(cut, faces)
+
+    def test_a_crossing_of_an_edge_comes_first(self) -> None:
+        """A segment crosses an edge of the mesh where another one ends: that is seen before the sweep is there."""
+        points = [(0.0, 0.0), (1.0, 4.0), (-4.0, 4.0), (2.0, 8.0)]
+        loose = [((-1.0, 3.0), (2.0, 1.0)), ((0.5, 2.0), (3.0, 5.0))]
+        cut = Cut(points, [(0, 1, 2)], loose, [], True)
+        faces = swept(cut)
+        assert faces.outcome == CROSSING
+        assert not faults(cut, faces)
+
     def test_control_another_segment(self) -> None:
         """A segment that was not there: the sweep without it is another one."""
         random, noticed = Random(1), 0

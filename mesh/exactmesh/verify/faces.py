@@ -48,11 +48,11 @@ class Faces:
         return np.flatnonzero(self.plane.done)
 
     def covered(self, sides: IndexArray) -> npt.NDArray[np.bool_]:
-        """Tell which sides triangles cover; the last, unbounded one they do not."""
+        """Tell which sides triangles cover; not the unbounded one, no more than those of the last edge, a spare one."""
         edge, upper = np.minimum(sides >> 1, len(self.plane.low) - 1), sides & 1
         inside, sort = self.plane.inside[edge] > 0, self.plane.sort[edge]
         lower = np.where(sort == UP, False, np.where(sort == DOWN, True, inside))
-        found: npt.NDArray[np.bool_] = np.where(upper, inside, lower) & (sides < 2 * len(self.plane.low))
+        found: npt.NDArray[np.bool_] = np.where(upper, inside, lower)
         return found
 
     def odd(self, sides: IndexArray) -> npt.NDArray[np.bool_]:
@@ -128,7 +128,7 @@ def _plane(points: FloatArray, node: npt.NDArray[np.int8], low: IndexArray, high
         following=np.full(capacity, NIL, dtype=np.intp),
         last=np.full(len(points), NIL, dtype=np.intp),
         face=np.arange(2 * capacity + 1, dtype=np.intp),
-        place=np.full(len(points), 2 * capacity, dtype=np.intp),
+        place=np.full(len(points), NIL, dtype=np.intp),
         on=(node == 1).astype(np.int8),
         size=np.full(1, size, dtype=np.intp),
         witness=np.full(2, NIL, dtype=np.intp),
