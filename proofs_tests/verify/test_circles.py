@@ -33,7 +33,7 @@ class TestCircles:
 
     @pytest.mark.parametrize("seed", range(3))
     def test_edges(self, seed: int) -> None:
-        for triangles in sets_of(SCATTERED, seed + 30, 30):
+        for triangles in sets_of(SCATTERED, seed + 30, 15):
             finding = verify(SCATTERED, triangles).findings[Property.DELAUNAY]
             owner = {e: t for t, row in enumerate(triangles) for e in edges_of(row)}
             third = {e: next(v for v in triangles[t] if v not in e) for e, t in owner.items()}
@@ -106,7 +106,7 @@ class TestCircles:
     @pytest.mark.parametrize("seed", range(3))
     def test_diametral(self, seed: int) -> None:
         seen = Counter[str]()
-        for triangles in sets_of(SCATTERED, seed + 60, 30):
+        for triangles in sets_of(SCATTERED, seed + 60, 15):
             owner = {e: t for t, row in enumerate(triangles) for e in edges_of(row)}
             segments = [e for e in owner if e[0] < e[1] and e[::-1] in owner][::2]
             report = verify(SCATTERED, triangles, segments=segments, claims=["gabriel"])
