@@ -2,14 +2,24 @@
 
 from collections import Counter
 from fractions import Fraction
+from itertools import islice
+from random import Random
 
 import pytest
 from proofs_tests import oracles
+from proofs_tests.mesh.enumeration import triangulations
+from proofs_tests.oracles import Triangle
+from proofs_tests.verify.test_links import PLACES
 from proofs_tests.verify.test_meetings import Points, about, edges_of, name
-from proofs_tests.verify.test_sweep import SCATTERED, sets_of
 
 from exactkernel import Sign
 from exactmesh.verify import Finding, Kind, Property, Verdict, Violation, verify
+
+
+def meshes(seed: int) -> list[list[Triangle]]:
+    """Triangulations, some of whose triangles are left out."""
+    random = Random(seed)
+    return [[t for t in rows if random.random() < 0.9] for rows in islice(triangulations(PLACES), seed, None, 40)][:12]
 
 
 def exact_incircle(points: Points, a: int, b: int, c: int, d: int) -> Fraction:
@@ -33,8 +43,9 @@ class TestCircles:
 
     @pytest.mark.parametrize("seed", range(3))
     def test_edges(self, seed: int) -> None:
-        for triangles in sets_of(SCATTERED, seed + 30, 30):
-            finding = verify(SCATTERED, triangles).findings[Property.DELAUNAY]
+        seen = 0
+        for triangles in meshes(seed):
+            finding = verify(PLACES, triangles).findings[Property.DELAUNAY]
             owner = {e: t for t, row in enumerate(triangles) for e in edges_of(row)}
             third = {e: next(v for v in triangles[t] if v not in e) for e, t in owner.items()}
             found = told_once(finding)
@@ -43,17 +54,19 @@ class TestCircles:
                 if e[0] > e[1] or back not in owner:
                     continue
                 d = third[back]
-                value = exact_incircle(SCATTERED, *e, third[e], d) if d != third[e] else Fraction(0)
+                value = exact_incircle(PLACES, *e, third[e], d) if d != third[e] else Fraction(0)
                 violation = found.pop((*e, third[e], d), None)
                 assert (violation is not None) is (value > 0)
                 if violation is not None:
                     assert (violation.triangles, violation.magnitude, violation.sign) == ((t, owner[back]), value, 1)
-                    corners = ", ".join(name(SCATTERED, v) for v in (*e, third[e]))
+                    corners = ", ".join(name(PLACES, v) for v in (*e, third[e]))
                     assert violation.message == (
-                        f"vertex {name(SCATTERED, d)} of triangle {owner[back]} lies inside the circumcircle of "
+                        f"vertex {name(PLACES, d)} of triangle {owner[back]} lies inside the circumcircle of "
                         f"triangle {t} = {corners}: incircle {about(value)}"
                     )
+                    seen += 1
             assert not found
+        assert seen > 3
 
     @pytest.mark.parametrize("turn", [False, True])
     def test_unused(self, turn: bool) -> None:
@@ -106,15 +119,15 @@ class TestCircles:
     @pytest.mark.parametrize("seed", range(3))
     def test_diametral(self, seed: int) -> None:
         seen = Counter[str]()
-        for triangles in sets_of(SCATTERED, seed + 60, 30):
+        for triangles in meshes(seed + 3):
             owner = {e: t for t, row in enumerate(triangles) for e in edges_of(row)}
             segments = [e for e in owner if e[0] < e[1] and e[::-1] in owner][::2]
-            report = verify(SCATTERED, triangles, segments=segments, claims=["gabriel"])
+            report = verify(PLACES, triangles, segments=segments, claims=["gabriel"])
             found = told_once(report.findings[Property.GABRIEL])
             for e, t in owner.items():
                 (c,) = {*triangles[t]} - {*e}
                 on_segment = e in segments or e[::-1] in segments
-                (ax, ay), (bx, by), (x, y) = (SCATTERED[v] for v in (*e, c))
+                (ax, ay), (bx, by), (x, y) = (PLACES[v] for v in (*e, c))
                 value = (x - ax) * (bx - x) + (y - ay) * (by - y)
                 violation = found.pop((*e, c), None)
                 assert (violation is not None) is ((on_segment or e[::-1] not in owner) and value > 0)
@@ -126,8 +139,8 @@ class TestCircles:
                         Sign.POSITIVE,
                     )
                     assert violation.message == (
-                        f"vertex {name(SCATTERED, c)} lies inside the diametral circle of the {sort} "
-                        f"{name(SCATTERED, e[0])} - {name(SCATTERED, e[1])}: diametral {about(Fraction(value))}"
+                        f"vertex {name(PLACES, c)} lies inside the diametral circle of the {sort} "
+                        f"{name(PLACES, e[0])} - {name(PLACES, e[1])}: diametral {about(Fraction(value))}"
                     )
                     seen[sort] += 1
             assert not found

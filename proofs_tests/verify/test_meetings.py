@@ -3,16 +3,20 @@
 from collections import Counter, defaultdict
 from decimal import Decimal
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 from proofs_tests import oracles
 from proofs_tests.oracles import Triangle
 from proofs_tests.verify.test_constrained import Plain
+from proofs_tests.verify.test_links import links_of, mesh_of
 from proofs_tests.verify.test_sweep import LATTICE, SCATTERED, covers, meet_improperly, sets_of
 
-from exactmesh.verify import Kind, Property, Verdict, verify
+from exactmesh.verify import Finding, Kind, Property, Verdict, verify
+from exactmesh.verify.admissible import check_sweep
+from exactmesh.verify.boundary import boundary_of
+from exactmesh.verify.cells import Cells
 from exactmesh.verify.constrained import stacked
 from exactmesh.verify.domain import constraints_of
 
@@ -34,6 +38,12 @@ def edges_of(t: Triangle) -> list[Edge]:
 
 def about(value: Fraction) -> str:
     return f"{Decimal(value.numerator) / Decimal(value.denominator):.3g}"
+
+
+def meeting(points: Points, triangles: list[Triangle]) -> Finding:
+    """What the sweep finds of counterclockwise triangles, no directed edge of which occurs twice."""
+    mesh = mesh_of(points, triangles)
+    return check_sweep(mesh, Cells(mesh.triangles, mesh.quads), boundary_of(links_of(mesh)))
 
 
 def true_sentences(points: Points, s: Triangle, t: Triangle, rows: Edge) -> dict[str, list[tuple[Kind, set[int]]]]:
@@ -70,7 +80,7 @@ class TestMeetings:
     def test_sentences(self, points: Points, seed: int) -> None:
         exact, seen = oracles.rationals(points), Counter[Kind]()
         for triangles in sets_of(points, seed + 10, 40):
-            finding = verify(points, triangles).findings[Property.ADMISSIBLE]
+            finding = meeting(points, triangles)
             pairs = combinations(triangles, 2)
             assert (finding.verdict is Verdict.HOLDS) is all(oracles.meet_admissibly(exact, s, t) for s, t in pairs)
             if finding.verdict is Verdict.HOLDS:
@@ -98,6 +108,21 @@ class TestMeetings:
                 assert violation.kind is kind
                 sentences = true_sentences(points, triangles[0], triangles[1], (0, 1))
                 assert kind in [meant for meant, _ in sentences[violation.message]]
+
+    @pytest.mark.parametrize("turn", [(1, 0), (0, 1), (-2, 1)])
+    def test_on_one_line(self, turn: tuple[int, int]) -> None:
+        """Two triangles on two sides of a line, with edges on it that overlap in any way: the corner is told that is
+        inside of the other's edge, and none that is beside it."""
+        x, y = turn
+        points = [(x * u - y * v, y * u + x * v) for u, v in [*((u, 0) for u in range(5)), (1, 3), (2, -3)]]
+        pairs = [*product(combinations(range(5), 2), repeat=2)]
+        pairs = [(e, f) for e, f in pairs if max(e[0], f[0]) < min(e[1], f[1]) and e != f]
+        for i, ((a, b), (c, d)) in enumerate(pairs):
+            rows = [((a, b, 5), (b, 5, a))[i % 2], ((d, c, 6), (c, 6, d))[i // 2 % 2]]
+            triangles = rows[:: (1, -1)[i // 4 % 2]]
+            (violation,) = meeting(points, triangles).violations
+            assert violation.kind is Kind.HANGING_NODE
+            assert true_sentences(points, triangles[0], triangles[1], (0, 1))[violation.message]
 
     def test_same_position(self) -> None:
         """Corners of the boundary that share a position are told pair by pair, with a triangle at each."""
