@@ -1,6 +1,7 @@
 """What fuzzing found, by name, with the bytes."""
 
 import io
+import json
 import struct
 import zipfile
 from pathlib import Path
@@ -12,8 +13,9 @@ from proofs_tests.fuzzing.targets import TARGETS
 
 from exactmesh import PSLG
 from exactmesh.adapters import given_mesh
-from exactmesh.errors import FileFormatError, GeometryError
+from exactmesh.errors import CertificateError, FileFormatError, GeometryError
 from exactmesh.io import read
+from exactmesh.verify import read_certificate, verify
 
 
 @pytest.mark.obligation("P5", "what fuzzing found is refused, at once and by a typed error", method="named cases")
@@ -35,6 +37,22 @@ class TestFound:
         """ValueError: the truth value of an array is ambiguous."""
         with pytest.raises(GeometryError, match=r"type is .*, no type of GeoJSON"):
             PSLG.from_geojson({"type": kind})
+
+    @pytest.mark.parametrize("name", ["segments", "domain", "labels"])
+    def test_certificate_without_a_part(self, name: str) -> None:
+        """KeyError: what may be null was taken for there when it was not."""
+        document = json.loads(verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]).to_json())
+        del document["given"][name]
+        with pytest.raises(CertificateError, match=rf"the certificate has no proper 'given\.{name}'"):
+            read_certificate(document)
+
+    @pytest.mark.parametrize("domain", [{}, {"rule": None}, {"rule": 3}])
+    def test_certificate_of_a_domain_without_a_rule(self, domain: object) -> None:
+        """KeyError: the rule of a domain was looked up unseen."""
+        document = json.loads(verify([(0, 0), (1, 0), (0, 1)], [(0, 1, 2)]).to_json())
+        document["given"]["domain"] = domain
+        with pytest.raises(CertificateError, match=r"the certificate has no proper 'given\.domain\.rule'"):
+            read_certificate(document)
 
     def test_meshb_that_claims_a_billion_vertices(self, tmp_path: Path) -> None:
         """MemoryError: tens of gigabytes for a file of 40 bytes, where that much cannot be had."""

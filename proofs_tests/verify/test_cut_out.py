@@ -5,9 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from exactmesh.verify import Kind, Property, Violation
+from exactkernel import ShapeError
+from exactmesh.verify import Finding, Kind, Property, Verdict, Violation, mesh
 from exactmesh.verify.checked import CheckedMesh
-from exactmesh.verify.mesh import _MAX_POINTS, check_finite, check_indices, index_quads, index_triples
+from exactmesh.verify.mesh import _MAX_POINTS, check_finite, check_indices, index_quads, index_triples, points_of
 from exactmesh.verify.submesh import cut_out, with_numbers
 
 TRIANGLES = index_triples([(0, 1, 2), (1, 1, 2), (0, 2, 4)])
@@ -48,6 +49,13 @@ class TestMessages:
     def test_largest_index(self) -> None:
         """Cells are kept in 32 bits: the last of as many points as there may be is the largest number there."""
         assert np.iinfo(np.int32).max == _MAX_POINTS - 1
+        assert points_of([]).shape == (0, 2)
+
+    def test_as_many_points_as_there_may_be(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(mesh, "_MAX_POINTS", 3)
+        assert len(points_of([(0, 0), (1, 0), (2, 0)])) == 3
+        with pytest.raises(ShapeError, match="4 points; at most"):
+            points_of([(0, 0), (1, 0), (2, 0), (3, 0)])
 
     def test_finite(self) -> None:
         points = np.array([(0.0, 1.0), (np.inf, 0.0), (0.0, np.nan), (1e308, 1e308), (1e308, 1e308)])
@@ -59,10 +67,9 @@ CELLS = [*TRIANGLES.tolist(), *QUADS.tolist()]
 
 
 def violation(cells: tuple[int, ...], vertices: tuple[int, ...] = ()) -> Violation:
-    mesh = CheckedMesh(np.arange(8.0).reshape(4, 2), TRIANGLES, QUADS)
-    finding = check_indices(TRIANGLES, QUADS, 4)
+    whole = CheckedMesh(np.arange(8.0).reshape(4, 2), TRIANGLES, QUADS)
     named = Violation(Property.INDICES, Kind.OUT_OF_RANGE, cells, vertices, "")
-    return with_numbers(type(finding)(finding.verdict, 1, (named,)), mesh).violations[0]
+    return with_numbers(Finding(Verdict.FAILS, 1, (named,)), whole).violations[0]
 
 
 @pytest.mark.obligation(
@@ -97,12 +104,20 @@ class TestCutOut:
             else:
                 assert new >= len(part.indices)
 
+    def test_no_points(self) -> None:
+        """Of no points every index is out of range, and 0 is not below them."""
+        whole = CheckedMesh(np.zeros((0, 2)), index_triples([(0, 1, -1)]), QUADS[:0])
+        named = Violation(Property.INDICES, Kind.OUT_OF_RANGE, (0,), (), "")
+        part = cut_out(with_numbers(Finding(Verdict.FAILS, 1, (named,)), whole).violations[0])
+        (a, b, c) = part.triangles[0].tolist()
+        assert min(a, b) >= 0 > c
+        assert a != b
+
     def test_many_out_of_range(self) -> None:
         """Five indices below zero and four beyond: nine numbers, as many on either side."""
-        mesh = CheckedMesh(np.zeros((1, 2)), index_triples([(-1, -2, -3), (1, 2, 3), (-4, -5, 4)]), QUADS[:0])
+        whole = CheckedMesh(np.zeros((1, 2)), index_triples([(-1, -2, -3), (1, 2, 3), (-4, -5, 4)]), QUADS[:0])
         named = Violation(Property.INDICES, Kind.OUT_OF_RANGE, (0, 1, 2), (0,), "")
-        finding = check_indices(mesh.triangles, mesh.quads, 1)
-        part = cut_out(with_numbers(type(finding)(finding.verdict, 1, (named,)), mesh).violations[0])
+        part = cut_out(with_numbers(Finding(Verdict.FAILS, 1, (named,)), whole).violations[0])
         numbers = part.triangles.ravel().tolist()
         assert len({*numbers}) == 9
         assert [v < 0 for v in numbers] == [True] * 3 + [False] * 3 + [True] * 2 + [False]

@@ -6,12 +6,12 @@ from dataclasses import fields, replace
 from fractions import Fraction
 from random import Random
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from exactmesh.verify import (
-    WITNESSES,
     Finding,
     Kind,
     Property,
@@ -24,6 +24,7 @@ from exactmesh.verify import (
 )
 from exactmesh.verify.properties import LOCAL_PROPERTIES
 from exactmesh.verify.report import root_above
+from exactmesh.verify.witness import finding_of
 
 LARGEST = 1.7976931348623157e308
 KITE = [(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)]
@@ -82,6 +83,7 @@ class TestEquality:
         assert other == self.plain
         assert hash(other) == hash(self.plain)
         assert repr(other) == repr(self.plain)
+        assert other.is_local is self.plain.is_local is True
 
     def test_control_what_is_said(self) -> None:
         """Another attribute of those that say something."""
@@ -89,6 +91,14 @@ class TestEquality:
             other = replace(self.plain, **more)
             assert other != self.plain
             assert repr(other) != repr(self.plain)
+
+    def test_distance(self) -> None:
+        """The square, exactly, and the root, rounded up, of the finding about segments; values, not methods."""
+        finding = Finding(Verdict.HOLDS, distance_squared=Fraction(2))
+        report = Report({Property.SEGMENTS_PRESENT: finding}, (Property.SEGMENTS_PRESENT,), 3, 1, {})
+        assert report.distance_squared == Fraction(2)
+        assert report.distance == finding.distance == math.sqrt(2)  # the double above the root
+        assert Report({}, (), 3, 1, {}).distance is None
 
     def test_defaults(self) -> None:
         assert (self.plain.corners, self.plain.indices, self.plain.points, self.plain.point_count) == ((), (), (), 0)
@@ -101,6 +111,9 @@ class TestEquality:
         one, other = verify(KITE, HALVES), verify([*KITE], [*HALVES])
         assert one == other == replace(one, mesh=None)
         assert one.mesh is not other.mesh
+        empty = Report({}, (), 3, 1, {})
+        assert empty == replace(empty, mesh=one.mesh)
+        assert empty.ok
 
 
 @pytest.mark.obligation("V3", "a violation is local iff its property is", method="enumeration", control_in="mutants")
@@ -132,13 +145,12 @@ class TestText:
         with pytest.raises(ValueError, match="not JSON compliant"):
             report.to_json()
 
-    @pytest.mark.parametrize("more", [-1, 0, 1])
-    def test_a_hundred_witnesses(self, more: int) -> None:
+    @pytest.mark.parametrize("n", [0, 1, 99, 100, 101, 250])
+    def test_a_hundred_witnesses(self, n: int) -> None:
         """So many are spelled out, and all are counted."""
-        n = 100 + more
-        unused = verify([(float(i), float(i * i)) for i in range(n)], []).findings[Property.ALL_POINTS_USED]
-        assert (unused.count, len(unused.violations)) == (n, min(n, 100))
-        assert WITNESSES == 100
+        finding = finding_of(np.arange(n), lambda i: Violation(Property.ACUTE, Kind.RIGHT_ANGLE, (i,), (), ""))
+        assert (finding.count, [v.triangles for v in finding.violations]) == (n, [(i,) for i in range(min(n, 100))])
+        assert finding.severity is (Severity.WRONG if n else None)
 
     def test_notes(self) -> None:
         """A note is there where there is something to note, and only there."""

@@ -68,6 +68,18 @@ class TestClaims:
             assert found == (Property.COVERS_HULL, Property.ACUTE, Property.MAX_AREA)
         assert claimed_properties("acute", asked) == (Property.ACUTE, Property.MAX_AREA)
 
+    def test_lines(self) -> None:
+        """With segments the same as without, but for them; with a domain what covers it."""
+        plain, lines, domain = (
+            asked_properties(segments=segments, domain=domain, labels=False)
+            for segments, domain in ((False, False), (True, False), (False, True))
+        )
+        usual = {*claimed_properties(None, plain)}
+        assert usual == {*Property} & {*[*Property][: [*Property].index(Property.DELAUNAY) + 1]} - {Property.CONVEX}
+        assert {*claimed_properties(None, lines)} == usual - {Property.DELAUNAY} | ON_LINES
+        covering = {Property.COVERS_DOMAIN, Property.DOMAIN_POINTS}
+        assert {*claimed_properties(None, domain)} == {*ADMISSIBLE_MESH} | ON_LINES | covering
+
     def test_usual(self) -> None:
         """Of quadrilaterals, and of meshes of finite elements, with whatever comes with them."""
         for domain, quads in product((False, True), repeat=2):

@@ -111,9 +111,12 @@ def read_certificate(text: str | bytes | Mapping[str, object]) -> Certificate:
     for path, sort in _PARTS.items():
         part: object = document
         for name in path.split("."):
-            part = part.get(name) if isinstance(part, dict) else None
+            part = part.get(name, _ABSENT) if isinstance(part, dict) else _ABSENT
         if not isinstance(part, sort):
             raise CertificateError(f"the certificate has no proper {path!r}")
+    domain = document["given"]["domain"]
+    if domain is not None and not isinstance(domain.get("rule"), str):
+        raise CertificateError("the certificate has no proper 'given.domain.rule'")
     if any(not isinstance(finding, dict) for finding in document["properties"].values()):
         raise CertificateError("the certificate has no proper 'properties'")
     _require_consistency(document["claims"], document["properties"], ok=document["ok"])
@@ -131,6 +134,7 @@ def _require_consistency(claims: list[object], properties: Mapping[str, Mapping[
         raise CertificateError("the certificate contradicts itself: 'ok' is not what its verdicts on the claims say")
 
 
+_ABSENT = object()  # null is a proper part of some
 _PARTS: dict[str, type | tuple[type, ...]] = {
     "ok": bool,
     "mesh.sha256": str,

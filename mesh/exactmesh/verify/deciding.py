@@ -96,9 +96,8 @@ def check_mesh(
     boundary = tiling.boundary if tiling.admissible.verdict is Verdict.HOLDS else None
     marks = np.zeros(len(tiling.links.slots), dtype=np.uint8)
     if constraints.any:
-        free = unused if links is tiling.links else unused_points(tiling.links)
         findings.update(
-            check_constraints(mesh, shapes, tiling.links, boundary, free, constraints, positions, marks, decided)
+            check_constraints(mesh, shapes, tiling.links, boundary, unused, constraints, positions, marks, decided)
         )
     if Property.GABRIEL in decided or Property.CIRCUMCENTRES_INSIDE in decided:
         missing = _missing_for_circles(tiling.links, marks, findings)

@@ -1,0 +1,123 @@
+"""V1 for what is decided of small lists of cells as a whole: shortcuts change no answer."""
+
+import hashlib
+import struct
+from collections import defaultdict
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from proofs_tests import oracles
+from proofs_tests.oracles import Triangle
+
+from exactmesh.verify import Property, Verdict, verify
+from exactmesh.verify.domain import Outline
+from exactmesh.verify.hashing import array_sha256, domain_sha256
+
+Place = tuple[float, float]
+
+#: Triangles round the origin, one pinch after the other, and two closed fans over each other.
+RING = [(4.0, 0.0), (0.0, 4.0), (-4.0, 0.0), (0.0, -4.0)]
+CASES: dict[str, tuple[list[Place], list[Triangle]]] = {
+    "fan": ([(0.0, 0.0), *RING], [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1)]),
+    "pinched": ([(9.0, 9.0), (0.0, 0.0), *RING, (9.0, 0.0)], [(1, 2, 3), (1, 4, 5), (2, 6, 0)]),
+    "pinched twice": ([*RING, (0.0, 0.0), (8.0, 1.0), (8.0, -1.0)], [(4, 0, 1), (4, 2, 3), (0, 6, 5)]),
+    "two rounds": (
+        [(0.0, 0.0), *RING, *((2 * x - y, 2 * y + x) for x, y in RING)],
+        [(0, i, i % 4 + 1) for i in range(1, 5)] + [(0, i + 4, i % 4 + 5) for i in range(1, 5)],
+    ),
+}
+
+
+def broken_fans(triangles: Sequence[Triangle]) -> set[int]:
+    opposite = defaultdict(list)
+    for t in triangles:
+        for i in range(3):
+            opposite[t[i]].append((t[i - 2], t[i - 1]))
+    return {v for v, edges in opposite.items() if not oracles.is_one_fan(edges)}
+
+
+@pytest.mark.obligation("V1", "broken fans are found whatever else is wrong", method="exhaustive", control_in="mutants")
+class TestFans:
+    """Any of the triangles listed clockwise, pinched vertices, fans over each other: VERTEX_MANIFOLD fails just at the
+    vertices whose triangles, as they are listed, form no fan."""
+
+    @pytest.mark.parametrize("name", CASES)
+    def test_turned_round(self, name: str) -> None:
+        points, triangles = CASES[name]
+        for turned in product((False, True), repeat=min(len(triangles), 4)):
+            some = [t[::-1] if is_turned else t for t, is_turned in zip(triangles, turned, strict=False)]
+            rows = [*some, *triangles[4:]]
+            finding = verify(points, rows).findings[Property.VERTEX_MANIFOLD]
+            assert {v.vertices[0] for v in finding.violations} == broken_fans(rows)
+            finding = verify(points, rows, orientation="any").findings[Property.VERTEX_MANIFOLD]
+            assert {v.vertices[0] for v in finding.violations} == broken_fans(triangles)
+
+
+@pytest.mark.obligation("V1", "where cells overlap, nothing is said that rests on it", method="named cases")
+class TestNotAdmissible:
+    """Coincident points are found all the same; whether the hull is covered is open, and so is what rests on that."""
+
+    def test_double_cover(self) -> None:
+        found = verify(*CASES["two rounds"])
+        assert found.verdict(Property.ADMISSIBLE) is Verdict.FAILS
+        assert found.findings[Property.COVERS_HULL].because == (Property.ADMISSIBLE,)
+        assert found.findings[Property.DELAUNAY].verdict is not Verdict.HOLDS
+
+    def test_control_one_position_under_two_indices(self) -> None:
+        """All points are used: they are compared because the triangles are not admissible."""
+        points = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
+        found = verify(points, [(0, 1, 2), (3, 4, 5)])
+        assert found.verdict(Property.ADMISSIBLE) is Verdict.FAILS
+        (violation,) = found.findings[Property.DISTINCT_POINTS].violations
+        assert violation.vertices == (0, 3)
+        points[3] = (0.0, -0.5)
+        assert verify(points, [(0, 1, 2), (3, 4, 5)]).verdict(Property.DISTINCT_POINTS) is Verdict.HOLDS
+
+    def test_the_search_has_ended(self) -> None:
+        """Cells without area, or two on one side of an edge: there may be more than was found."""
+        flat = verify([(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)], [(0, 1, 2)]).findings[Property.ADMISSIBLE]
+        twice = verify([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 2.0)], [(0, 1, 2), (0, 1, 3)])
+        assert flat.lower_bound
+        assert twice.findings[Property.ADMISSIBLE].lower_bound
+        assert not verify(*CASES["fan"]).findings[Property.ADMISSIBLE].lower_bound
+
+
+def naive(head: str, *arrays: npt.NDArray[np.generic]) -> str:
+    """The canonical bytes, one number after the other."""
+    data = head.encode()
+    for array in arrays:
+        data += struct.pack("<qq", *array.shape)
+        for number in array.ravel().tolist():
+            data += struct.pack("<q" if array.dtype.kind == "i" else "<d", number)
+    return hashlib.sha256(data).hexdigest()
+
+
+@pytest.mark.obligation("V2", "a domain's hash is that of its numbers and its rule", method="differential")
+class TestHashes:
+    """As an array after the other; unsigned indices where they fit are the same as signed ones."""
+
+    def test_domain(self) -> None:
+        points = np.array([(0.0, 0.0), (2.0, 0.0), (0.0, 2.0)])
+        segments = np.array([(0, 1), (1, 2), (2, 0)])
+        names = set[str]()
+        for even_odd in (False, True):
+            for holes in (np.empty((0, 2)), np.array([(0.5, 0.5)])):
+                outline = Outline(points, segments, holes, np.empty((0, 2)), np.empty(0), np.empty(0), even_odd)
+                names.add(domain_sha256(outline))
+                rule = "even-odd" if even_odd else "seeds"
+                assert domain_sha256(outline) == naive(
+                    f"exactmesh-domain/1 {rule}\n", points, segments, holes, np.empty((0, 4))
+                )
+        assert len(names) == 4
+
+    @pytest.mark.parametrize("index", [0, 2**31, 2**63 - 1])
+    def test_unsigned(self, index: int) -> None:
+        signed, unsigned = (np.array([[1, index]], dtype=dtype) for dtype in ("i8", "u8"))
+        assert array_sha256(signed) == array_sha256(unsigned)
+
+    def test_control_beyond(self) -> None:
+        """2^63 is not the -2^63 that has its bits."""
+        assert array_sha256(np.array([2**63], dtype="u8")) != array_sha256(np.array([-(2**63)]))
