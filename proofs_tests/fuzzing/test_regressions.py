@@ -13,7 +13,8 @@ from proofs_tests.fuzzing.targets import TARGETS
 
 from exactmesh import PSLG
 from exactmesh.adapters import given_mesh
-from exactmesh.errors import CertificateError, FileFormatError, GeometryError
+from exactmesh.adapters.meshio_mesh import given_cells
+from exactmesh.errors import AdapterError, CertificateError, FileFormatError, GeometryError
 from exactmesh.io import read
 from exactmesh.verify import read_certificate, verify
 
@@ -37,6 +38,14 @@ class TestFound:
         """ValueError: the truth value of an array is ambiguous."""
         with pytest.raises(GeometryError, match=r"type is .*, no type of GeoJSON"):
             PSLG.from_geojson({"type": kind})
+
+    @pytest.mark.parametrize("kind", ["polygon", "hexahedron"])
+    @pytest.mark.parametrize("rows", [3, np.array(3), None, [[0, 1, 2], [2]]], ids=["int", "array", "None", "ragged"])
+    def test_meshio_cells_without_a_length(self, kind: str, rows: object) -> None:
+        """TypeError: len() of unsized object; ValueError: inhomogeneous shape."""
+        blocks = [("triangle", [[0, 1, 2]]), (kind, rows)]
+        with pytest.raises(AdapterError, match=rf"a mesh has cells of type '{kind}'"):
+            given_cells(np.zeros((3, 2)), blocks, "a mesh")
 
     @pytest.mark.parametrize("name", ["segments", "domain", "labels"])
     def test_certificate_without_a_part(self, name: str) -> None:

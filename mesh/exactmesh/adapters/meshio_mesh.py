@@ -56,16 +56,16 @@ def given_cells(points: object, blocks: Iterable[tuple[str, object]], source: st
             quads.append(index_rows(rows, 4, kind)[:, _PIXEL])
         elif kind in _LINES:
             lines.append(index_rows(rows, 2, kind, nodes=_LINES[kind]))
-        elif kind == "polygon" and len(shape := np.shape(cast("Indices", rows))) == 2 and shape[1] in (3, 4):
-            (triangles if shape[1] == 3 else quads).append(index_rows(rows, shape[1], kind))
-        elif kind != "vertex" and len(cast("Indices", rows)):
+        elif kind == "polygon" and (corners := _columns(rows)) in (3, 4):
+            (triangles if corners == 3 else quads).append(index_rows(rows, corners, kind))
+        elif kind != "vertex" and _columns(rows) != 0:
             raise AdapterError(f"{source} has cells of type {kind!r}: neither triangles nor quadrilaterals")
     if not triangles and not quads:
         raise AdapterError(f"{source} has no triangles and no quadrilaterals")
     joined = [np.concatenate([no_pairs(width), *rows]) for width, rows in ((3, triangles), (4, quads), (2, lines))]
-    corners = np.concatenate([joined[0].ravel(), joined[1].ravel()])
+    used = np.concatenate([joined[0].ravel(), joined[1].ravel()])
     return GivenMesh(
-        planar_points(points, corners, source),
+        planar_points(points, used, source),
         joined[0],
         joined[1],
         segments=joined[2] if len(joined[2]) else None,
@@ -73,3 +73,12 @@ def given_cells(points: object, blocks: Iterable[tuple[str, object]], source: st
         claims=ADMISSIBLE_MESH,
         source=source,
     )
+
+
+def _columns(rows: object) -> int:
+    """Return how long the rows are: 0 where there are none, -1 where they are of different lengths, or no rows."""
+    try:
+        shape = np.shape(cast("Indices", rows))
+    except ValueError:
+        return -1
+    return 0 if 0 in shape else shape[1] if len(shape) == 2 else -1
