@@ -58,8 +58,8 @@ def pieces_of_shapely(geometry: "BaseGeometry | Iterable[BaseGeometry]") -> list
 def _of_geometry(geometry: "BaseGeometry", where: str) -> Iterator[Piece]:
     kind = geometry.geom_type
     if kind in ("MultiPolygon", "MultiLineString", "MultiPoint", "GeometryCollection"):
-        for i, part in enumerate(geometry.geoms):
-            yield from _of_geometry(part, f"{where}.geoms[{i}]")
+        for i in range(len(geometry.geoms)):
+            yield from _of_geometry(_part(geometry, i, where), f"{where}.geoms[{i}]")
     elif geometry.has_z:
         raise GeometryError(f"{where} has a third coordinate; meshes are planar: see shapely.force_2d")
     elif geometry.is_empty:
@@ -72,6 +72,14 @@ def _of_geometry(geometry: "BaseGeometry", where: str) -> Iterator[Piece]:
         yield Piece(shape, _positions(geometry, where))
     else:
         raise GeometryError(f"{where} is a {kind}, which no straight lines make")
+
+
+def _part(geometry: "BaseGeometry", i: int, where: str) -> "BaseGeometry":
+    try:
+        part: BaseGeometry = geometry.geoms[i]
+    except NotImplementedError:  # GEOS knows curves, shapely cannot hand them out
+        raise GeometryError(f"{where}.geoms[{i}] is curved, and no straight lines make it") from None
+    return part
 
 
 def _positions(geometry: "BaseGeometry", where: str) -> FloatArray:

@@ -39,6 +39,18 @@ class TestFound:
         with pytest.raises(GeometryError, match=r"type is .*, no type of GeoJSON"):
             PSLG.from_geojson({"type": kind})
 
+    def test_shapely_collection_with_a_curve(self) -> None:
+        """NotImplementedError: GEOS reads curves that shapely has no class for."""
+        shapely = pytest.importorskip("shapely")
+        try:
+            curved = shapely.from_wkt("GEOMETRYCOLLECTION (POINT (0 0), CIRCULARSTRING (0 0, 1 1, 2 0))")
+        except shapely.GEOSException:
+            pytest.skip("a GEOS without curves")
+        with pytest.raises(GeometryError, match=r"geometry\.geoms\[1\] is curved"):
+            PSLG.from_shapely(curved)
+        with pytest.raises(AdapterError, match=r"holds one that is curved"):
+            given_mesh(curved)
+
     @pytest.mark.parametrize("kind", ["polygon", "hexahedron"])
     @pytest.mark.parametrize("rows", [3, np.array(3), None, [[0, 1, 2], [2]]], ids=["int", "array", "None", "ragged"])
     def test_meshio_cells_without_a_length(self, kind: str, rows: object) -> None:

@@ -68,7 +68,10 @@ def _polygons(mesh: object) -> npt.NDArray[np.object_]:
         kind = type(several[odd[0]]).__name__
         raise AdapterError(f"geometry {odd[0]} is a {kind}, no shapely geometry", indices=odd.tolist())
     while (shapely.get_type_id(parts) > shapely.GeometryType.POLYGON).any():  # collections, of collections perhaps
-        parts = shapely.get_parts(parts)
+        try:
+            parts = shapely.get_parts(parts)
+        except NotImplementedError:  # GEOS knows curves, shapely cannot hand them out
+            raise AdapterError("a collection of geometries holds one that is curved") from None
     return parts
 
 
