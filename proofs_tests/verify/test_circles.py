@@ -91,6 +91,18 @@ class TestCircles:
             )
         assert not found
 
+    @pytest.mark.parametrize("inner", [0, 4])
+    def test_copies(self, inner: int) -> None:
+        """An unused copy of a corner, inside or on the boundary, is in nobody's way; another unused point is."""
+        rim = [(0, 0), (4, 0), (4, 4), (0, 4)]
+        points = [*rim[:inner], (2, 2), *rim[inner:], (2, 2), (0, 0), (3, 2)]
+        a, b, c, d = (v + (inner == 0) for v in range(4))
+        rows = [(a, b, inner), (b, c, inner), (c, d, inner), (d, a, inner)]
+        for count, n in ((0, 7), (1, 8)):
+            report = verify(points[:n], rows, segments=[])
+            for property_ in (Property.DELAUNAY, Property.CONSTRAINED_DELAUNAY):
+                assert report.findings[property_].count == count
+
     def test_without_circle(self) -> None:
         points = [(0, 0), (4, 0), (2, 0), (0, 4)]
         rows = [(0, 1, 2), (0, 1, 3)]

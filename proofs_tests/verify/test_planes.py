@@ -249,6 +249,7 @@ class TestCross:
 
     def test_pairs(self) -> None:
         edges = [*combinations(range(0, len(PLACES), 2), 2)]
+        edges = sorted(edges, key=lambda e: sum(crosses(e, f) for f in edges))  # what lies at index -1 crosses many
         low, high = np.array(edges, dtype=np.intp).T
         plane = _plane(ARRAY, np.ones(len(PLACES), dtype=np.int8), low, high, any_loose=False)
         plane = plane._replace(low=low.copy(), high=high.copy())
@@ -269,6 +270,8 @@ class TestCross:
             assert not planes.cross(CONTEXT, plane, NIL, e)
             assert not planes.cross(CONTEXT, plane, e, NIL)
         assert not planes.cross(CONTEXT, plane, NIL, NIL)
+        assert any(crosses(edges[-1], f) for f in edges)
+        assert len({WHOLE, CROSSING, CUT}) == 3
 
 
 @pytest.mark.obligation(
