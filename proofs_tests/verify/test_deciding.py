@@ -12,7 +12,7 @@ import pytest
 from proofs_tests import oracles
 from proofs_tests.oracles import Triangle
 
-from exactmesh.verify import Property, Verdict, verify
+from exactmesh.verify import Finding, Property, Verdict, verify
 from exactmesh.verify.domain import Outline
 from exactmesh.verify.hashing import array_sha256, domain_sha256
 
@@ -83,6 +83,50 @@ class TestNotAdmissible:
         assert flat.lower_bound
         assert twice.findings[Property.ADMISSIBLE].lower_bound
         assert not verify(*CASES["fan"]).findings[Property.ADMISSIBLE].lower_bound
+
+
+@pytest.mark.obligation("V1", "what rests on something names it", method="named cases", control_in="mutants")
+class TestBecause:
+    """Gabriel edges, and circumcentres inside, rest on admissible triangles that are (constrained) Delaunay; each is
+    decided alone as well. Points that no triangle uses count for Delaunay, where the triangles cover them."""
+
+    obtuse, rows = [(0.0, 0.0), (3.0, -1.0), (6.0, 0.0), (3.0, 1.0)], [(0, 1, 2), (0, 2, 3)]
+
+    def gabriel(self, points: Sequence[Place], triangles: Sequence[Triangle], **given: object) -> Finding:
+        report = verify(points, triangles, claims=["gabriel"], **given)  # type: ignore[call-overload]  # by name
+        finding = report.findings[Property.GABRIEL]
+        assert isinstance(finding, Finding)
+        return finding
+
+    def test_gabriel(self) -> None:
+        square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
+        assert self.gabriel(square, self.rows).verdict is Verdict.HOLDS
+        assert self.gabriel(self.obtuse, self.rows).because == (Property.DELAUNAY,)
+        other = [(1, 2), (0, 1)]
+        assert self.gabriel(self.obtuse, self.rows, segments=other).because == (Property.CONSTRAINED_DELAUNAY,)
+        missing = (Property.SEGMENTS_PRESENT, Property.CONSTRAINED_DELAUNAY)
+        assert self.gabriel(self.obtuse, self.rows, segments=[(1, 3)]).because == missing
+        twice = [(0.0, 0.0), (4.0, 0.0), (2.0, 3.0), (2.0, 4.0)]
+        assert Property.ADMISSIBLE in self.gabriel(twice, [(0, 1, 2), (0, 1, 3)]).because
+
+    @pytest.mark.parametrize("claim", ["gabriel", "circumcentres_inside"])
+    def test_alone(self, claim: str) -> None:
+        square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]
+        report = verify(square, self.rows, claims=[claim])
+        assert report.ok
+        others = {"gabriel", "circumcentres_inside"} - {claim}
+        assert not others & {str(property_) for property_ in report.findings}
+
+    def test_unused_points(self) -> None:
+        """Inside of a triangle, at the position of a corner, on an edge; outside."""
+        points, triangles = CASES["fan"]
+        for more, verdict in (
+            ((1.0, 1.0), Verdict.FAILS), ((2.0, 2.0), Verdict.FAILS), ((4.0, 0.0), Verdict.HOLDS),
+            ((9.0, 0.0), Verdict.UNDECIDED),
+        ):  # fmt: skip
+            report = verify([*points, more], triangles)
+            assert report.verdict(Property.DELAUNAY) is verdict
+            assert report.findings[Property.ALL_POINTS_USED].violations[0].vertices == (5,)
 
 
 def naive(head: str, *arrays: npt.NDArray[np.generic]) -> str:

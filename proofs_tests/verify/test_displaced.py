@@ -46,23 +46,25 @@ class TestExtremeDistances:
     it, it is not: where doubles and double-doubles have all vertices on the line, where one chain is measured
     narrowly and another widely, and at the ends of the range of doubles."""
 
-    @pytest.mark.parametrize("ratio", [0.0, 0.5, 1 - 2.0**-30, 1 + 2.0**-30, 2.0, 100.0])
+    @pytest.mark.parametrize(
+        "up", [0.0, *(ratio * SMALL for ratio in (0.5, 1 - 2.0**-30, 1 + 2.0**-30, 2.0, 100.0)), BELOW / 2]
+    )
     @pytest.mark.parametrize("below", [0.0, BELOW])
-    def test_below_the_last_place(self, below: float, ratio: float) -> None:
-        report, expected = two_chains((0.0, below), ratio * SMALL, math.inf)
+    def test_below_the_last_place(self, below: float, up: float) -> None:
+        report, expected = two_chains((0.0, below), up, math.inf)
         assert report.ok
         assert report.distance_squared == expected
         assert report.distance is not None
-        assert two_chains((0.0, below), ratio * SMALL, report.distance)[0].ok
-        assert two_chains((0.0, below), ratio * SMALL, 1.0)[0].ok
+        assert two_chains((0.0, below), up, report.distance)[0].ok
+        assert two_chains((0.0, below), up, 1.0)[0].ok
 
     @pytest.mark.parametrize("part", [1.0, 0.5, 2.0**-40, 0.0])
-    @pytest.mark.parametrize(("below", "ratio"), [(0.0, 0.0), (0.0, 2.0), (BELOW, 0.0)])
-    def test_control_within_less(self, below: float, ratio: float, part: float) -> None:
+    @pytest.mark.parametrize(("below", "up"), [(0.0, 0.0), (0.0, 2 * SMALL), (BELOW, 0.0), (BELOW, BELOW / 2)])
+    def test_control_within_less(self, below: float, up: float, part: float) -> None:
         """A vertex that is farther than asked for, by the last place at least."""
-        distance = two_chains((0.0, below), ratio * SMALL, math.inf)[0].distance
+        distance = two_chains((0.0, below), up, math.inf)[0].distance
         assert distance is not None
-        assert not two_chains((0.0, below), ratio * SMALL, math.nextafter(distance * part, 0.0))[0].ok
+        assert not two_chains((0.0, below), up, math.nextafter(distance * part, 0.0))[0].ok
 
     @pytest.mark.parametrize("up", [1, 3, 1000])
     def test_smallest_doubles(self, up: int) -> None:
