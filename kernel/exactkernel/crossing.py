@@ -34,8 +34,11 @@ __all__ = ["crossing_in_pairs", "dd_cross", "is_nearest_certain"]
 _SMALL = 2.0**-10
 #: 1 / (1 - 2^-10) and the roundings of the bounds themselves: a few hundred units of u at most.
 _SLACK = 1.125
-#: Below, num (b - a) may lose bits to underflow: a product of doubles is exact for exponents from -970 on.
+#: Below, num (b - a) may lose bits to underflow: a product of doubles is exact for exponents from -970 on. From there
+#: on, what else underflows, bounds of errors included, is nothing beside DD_BOUND times the product or the quotient.
 _SMALLEST_PRODUCT = 2.0**-900
+#: What is within e of a number whose magnitude is at most e as well, rounded: the sum and this product round by u each.
+_TWICE = 2.0 + 4.0 * UNIT_ROUNDOFF
 
 
 @jit
@@ -77,6 +80,8 @@ def _coordinate(
     if abs(p) < _SMALLEST_PRODUCT:
         return a, 0.0, math.inf
     high = p / det
+    if abs(high) < _SMALLEST_PRODUCT:
+        return a, 0.0, math.inf
     m, m_tail = dd_multiply(det, det_tail, high, 0.0)
     q, q_tail = fast_two_sum(high, ((p - m) + (p_tail - m_tail)) / det)
     error = num_error * abs(u / det) + abs(q) * (det_error / abs(det) + DD_BOUND)
@@ -120,7 +125,7 @@ def _zero_if_possible(x: float, tail: float, error: float) -> tuple[float, float
     """Return zero if it is within the bounds: doubles are so dense there that no bound would ever single it out."""
     magnitude = abs(x) + abs(tail)
     if magnitude <= error < math.inf:
-        return 0.0, 0.0, 2.0 * error
+        return 0.0, 0.0, _TWICE * error
     return x, tail, error
 
 

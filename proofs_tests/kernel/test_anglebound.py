@@ -90,6 +90,24 @@ class TestEnclosures:
                     low, high = shape_oracle.cosine_interval(angle, 80)
                     assert value - error <= low <= high <= value + error
 
+    @staticmethod
+    def needed(precision: int) -> Fraction:
+        """What the errors of pi, the bound as it is converted, their product, the quotient and the function add up to:
+        an angle below 3.15 errs by (1 + e)^4 - 1 of itself, which sine and cosine pass on, and round by e."""
+        e = Fraction(1, 2**precision)
+        return Fraction(315, 100) * ((1 + e) ** 4 - 1) + e
+
+    def test_lost_bits(self) -> None:
+        """From 10 bits on; relative to e the need falls with the precision, so that more bits ask for no more."""
+        error = Fraction(2) ** (anglebound._LOST_BITS - 10)
+        assert self.needed(10) <= error
+        assert self.needed(11) * 2 < self.needed(10)
+        assert anglebound._FIRST_PRECISION >= 10
+
+    def test_control_one_bit_less_is_too_little(self) -> None:
+        """2^(3 - precision)."""
+        assert self.needed(anglebound._FIRST_PRECISION) > Fraction(2) ** (3 - anglebound._FIRST_PRECISION)
+
     def test_computed_once(self) -> None:
         """The bounds of a mesher are few: 64 of them are remembered."""
         cosine_and_sine.cache_clear()

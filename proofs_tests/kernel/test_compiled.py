@@ -1,7 +1,9 @@
 """J1: the machine code does what the source says, and the rational stage answers it, come what may."""
 
 import ctypes
+import importlib
 import os
+import pkgutil
 import platform
 import re
 import signal
@@ -9,7 +11,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from types import FrameType
+from types import FrameType, ModuleType
 from typing import NoReturn
 
 import llvmlite.binding
@@ -20,7 +22,9 @@ from proofs_tests.kernel import digest as lane_digest
 from proofs_tests.kernel import oracle
 from proofs_tests.rounding.minifloat import Arithmetic
 
+import exactkernel
 import exactkernel as ek
+import exactmesh
 from exactkernel import batch, doubledouble, expansions, rational, shape
 from exactkernel.context import guarded_context
 from exactkernel.jit import cache_directory, is_cache_warm
@@ -92,6 +96,12 @@ def compiled_functions(module: str) -> dict[str, Arithmetic]:
     return {name: f for name, f in found.items() if f.py_func.__module__ == module}
 
 
+def options_of(function: Callable[..., object]) -> dict[str, object]:
+    """Return what a function is compiled with."""
+    options: dict[str, object] = getattr(function, "targetoptions")  # noqa: B009
+    return options
+
+
 def machine_code(function: Callable[..., object], signature: object, **options: object) -> str:
     """Compile anew (what comes from the cache has no listing) and return the assembly, callees included."""
     fresh = numba.njit(_nrt=False, **options)(getattr(function, "py_func", function))  # type: ignore[call-overload]
@@ -118,12 +128,22 @@ class TestMachineCode:
             inspected += 1
         assert inspected >= 19
 
-    def test_no_function_allows_contraction(self) -> None:
-        names = [name for name in sys.modules if name.startswith("exactkernel.")]
-        functions = [function for name in names for function in compiled_functions(name).values()]
-        options = [getattr(function, "targetoptions")["fastmath"] for function in functions]  # noqa: B009
-        assert len(options) > 40
-        assert not any(options)
+    @pytest.mark.parametrize(("package", "at_least"), [(exactkernel, 70), (exactmesh, 250)], ids=["kernel", "mesh"])
+    def test_no_function_allows_contraction(self, package: ModuleType, at_least: int) -> None:
+        """Nor any other liberty: what each function of the package, compiled yet or not, is compiled with."""
+        names = [module.name for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")]
+        for name in names:
+            if not name.endswith("__main__"):
+                importlib.import_module(name)
+        functions = {
+            f"{name}.{of}": f for name in names if name in sys.modules for of, f in compiled_functions(name).items()
+        }
+        assert len(functions) >= at_least
+        assert [name for name, function in functions.items() if options_of(function)["fastmath"]] == []
+
+    def test_control_an_option_is_seen(self) -> None:
+        """A function that is compiled with contraction."""
+        assert options_of(numba.njit(fastmath={"contract"})(lambda x: x))["fastmath"]
 
     @pytest.mark.skipif(not HAS_FUSED, reason="this processor has no fused multiply-add")
     def test_control_contraction_is_seen(self) -> None:

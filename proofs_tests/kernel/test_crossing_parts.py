@@ -73,13 +73,44 @@ class TestParts:
                 0.0,
                 math.inf,
             )
+            for det, known in ((2.0**900, True), (math.nextafter(2.0**900, math.inf), False)):
+                error = crossing._coordinate(1.0, 1.0, 0.0, 0.0, 1.0, sign, 0.0, 0.0, det, 0.0, 0.0)[2]
+                assert (error < math.inf) is known
 
-    def test_zeros(self) -> None:
-        """Where zero is within the error, it is taken; what is exact is within twice the error of it."""
-        cases = (0.0, 1.0, math.nextafter(2.0, 0.0), 2.0, math.nextafter(2.0, 3.0), 3.0, -1.0, -3.0)
-        for x, tail, error in itertools.product(cases, (0.0, 1.0, -1.0), (0.0, 2.0, 3.0, math.inf)):
-            wanted = (0.0, 0.0, 2 * error) if abs(x) + abs(tail) <= error and error < math.inf else (x, tail, error)
-            assert crossing._zero_if_possible(x, tail, error) == wanted
+    @staticmethod
+    def ends(x: float, tail: float, error: float) -> tuple[Fraction, Fraction]:
+        """What is within the error of x + tail."""
+        middle = Fraction(x) + Fraction(tail)
+        return middle - Fraction(error), middle + Fraction(error)
+
+    @pytest.mark.parametrize("scale", [1.0, 2.0**-300, 2.0**-1022, 2.0**-1060])
+    def test_zeros(self, scale: float) -> None:
+        """Zero is taken where the error allows it, and the new bound holds what the old one held, and little more."""
+        kept = 0
+        steps = [scale * (1.0 + k * 2.0**-52) for k in range(4)]
+        tails = [s * scale * t for s in (-1.0, 1.0) for t in (0.0, 2.0**-54, 2.0**-53, 3.0 * 2.0**-54)]
+        for x, tail, error in itertools.product([*steps, *(-s for s in steps)], tails, [*steps, 0.5 * scale]):
+            taken = crossing._zero_if_possible(x, tail, error)
+            low, high = self.ends(x, tail, error)
+            new_low, new_high = self.ends(*taken)
+            assert new_low <= low <= high <= new_high
+            if taken != (x, tail, error):
+                assert taken[:2] == (0.0, 0.0)
+                assert max(abs(new_low), abs(new_high)) <= 2 * Fraction(error) * (1 + 4 * U)
+                kept += 1
+            else:
+                assert abs(Fraction(x)) + abs(Fraction(tail)) > Fraction(error)
+        assert 0 < kept < len(steps) * 2 * len(tails) * 5
+
+    def test_zeros_and_no_bound(self) -> None:
+        assert crossing._zero_if_possible(1.0, 0.0, math.inf) == (1.0, 0.0, math.inf)
+        assert crossing._zero_if_possible(0.0, 0.0, 0.0) == (0.0, 0.0, 0.0)
+
+    def test_control_twice_the_error_is_too_little(self) -> None:
+        """The bound 2 e: the sum of 1 and u is rounded to e = 1, and 2 + u is beyond it."""
+        x, tail, error = 1.0, 2.0**-53, 1.0
+        assert crossing._zero_if_possible(x, tail, error)[:2] == (0.0, 0.0)
+        assert self.ends(x, tail, error)[1] > 2 * Fraction(error)
 
     def test_control_a_lost_tail_is_noticed(self) -> None:
         """A result without its tail, or with the tail's sign changed."""

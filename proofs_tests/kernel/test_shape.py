@@ -12,12 +12,10 @@ from hypothesis import strategies as st
 from proofs_tests.kernel import oracle as kernel_oracle
 from proofs_tests.kernel import shape_oracle
 from proofs_tests.kernel.strategies import Point, exponents, few_ulps, finite, moved, point_tuples, scaled, unit
-from proofs_tests.rounding.calculus import Bounded, largest_needed
 
 import exactkernel as ek
 from exactkernel.angle import AngleBound, angle_filter
 from exactkernel.anglebound import DIRECTIONS, cosine_and_sine
-from exactkernel.constants import ORIENT2D_BOUND, SHAPE_FACTOR
 from exactkernel.context import Context, guarded_context, make_context
 from exactkernel.measure import area_filter, length_filter
 from exactkernel.shape import (
@@ -28,7 +26,6 @@ from exactkernel.shape import (
     length_above_adaptive,
 )
 
-U = Fraction(1, 2**53)
 Triangle: TypeAlias = tuple[Point, ...]
 
 RIGHT = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
@@ -60,30 +57,6 @@ def near_angle(draw: st.DrawFn) -> tuple[Triangle, float]:
 
 def contexts(points: Triangle) -> list[Context]:
     return [guarded_context(), make_context(np.array(points))]
-
-
-@pytest.mark.obligation("K1", "the constants of the bounds on shapes are sound, by exact calculus", method="calculus")
-class TestShapeConstants:
-    """The bound that the calculus of rounding errors asks for leaves at least 5u of the one that is used."""
-
-    difference = Bounded(U)
-    product = difference * difference
-    cross = product + product
-    trigonometric = Bounded(U * (1 + U))  # a pair's head, nearest to a value 2^-1000 from the cosine
-
-    def test_angles(self) -> None:
-        needed = largest_needed((self.cross * self.trigonometric).e)
-        assert needed + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
-
-    def test_areas_and_lengths(self) -> None:
-        exact, squared_bound = Bounded(Fraction(0)), Bounded(Fraction(0)) * Bounded(Fraction(0))
-        for bound in (exact, squared_bound):
-            worst = Bounded(max(self.cross.e, bound.e))
-            assert largest_needed(worst.e) + 5 * U <= Fraction(SHAPE_FACTOR * ORIENT2D_BOUND)
-
-    def test_control_half_of_it_is_too_little_for_angles(self) -> None:
-        """Half the constant."""
-        assert largest_needed((self.cross * self.trigonometric).e) > Fraction(SHAPE_FACTOR * ORIENT2D_BOUND) / 2
 
 
 @pytest.mark.obligation(

@@ -14,8 +14,10 @@ from exactkernel.types import IntArray
 from exactmesh import edgealgebra as algebra
 
 __all__ = [
+    "CATALAN",
     "CIRCLE_OF_EIGHT",
     "COUNTS",
+    "GRIDS",
     "Triangulation",
     "canonical_triangles",
     "count_triangulations",
@@ -35,15 +37,20 @@ def grid(width: int, height: int) -> list[tuple[int, int]]:
 #: Eight points exactly on one circle: every choice is a tie.
 CIRCLE_OF_EIGHT = [(25, 0), (20, 15), (7, 24), (-15, 20), (-25, 0), (-24, -7), (0, -25), (15, -20)]
 
-#: Published numbers of triangulations that use all points: Catalan; OEIS A082640 [Aichholzer 2006].
+#: Published numbers of triangulations that use all points. Of convex polygons; of grids, OEIS A082640: with all points,
+#: that is, unimodular; its second column is A296165.
+CATALAN = {3: 1, 4: 2, 5: 5, 6: 14, 7: 42, 8: 132, 9: 429, 10: 1430}
+GRIDS = {(3, 3): 64, (3, 4): 852, (3, 5): 12170, (4, 4): 46456}
+
+#: Point sets with those numbers.
 COUNTS: dict[str, tuple[list[tuple[int, int]], int]] = {
-    "convex quadrilateral": ([(i, i * i) for i in range(4)], 2),
-    "convex hexagon": ([(i, i * i) for i in range(6)], 14),
-    "convex octagon": ([(i, i * i) for i in range(8)], 132),
-    "cocircular octagon": (CIRCLE_OF_EIGHT, 132),
-    "convex decagon": ([(i, i * i) for i in range(10)], 1430),
-    "3 x 3 grid": (grid(3, 3), 64),
-    "3 x 4 grid": (grid(3, 4), 852),
+    "convex quadrilateral": ([(i, i * i) for i in range(4)], CATALAN[4]),
+    "convex hexagon": ([(i, i * i) for i in range(6)], CATALAN[6]),
+    "convex octagon": ([(i, i * i) for i in range(8)], CATALAN[8]),
+    "cocircular octagon": (CIRCLE_OF_EIGHT, CATALAN[8]),
+    "convex decagon": ([(i, i * i) for i in range(10)], CATALAN[10]),
+    "3 x 3 grid": (grid(3, 3), GRIDS[3, 3]),
+    "3 x 4 grid": (grid(3, 4), GRIDS[3, 4]),
 }
 
 

@@ -8,7 +8,15 @@ from typing import NamedTuple
 from proofs_tests import oracles
 from proofs_tests.oracles import RationalPoint
 
-__all__ = ["SQRT2", "Account", "grading_constant", "grading_faults", "local_feature_size_squared", "radius_faults"]
+__all__ = [
+    "SLACK",
+    "SQRT2",
+    "Account",
+    "grading_constant",
+    "grading_faults",
+    "local_feature_size_squared",
+    "radius_faults",
+]
 
 Segment = tuple[int, int]
 #: Just above the square root of 2.
@@ -120,7 +128,10 @@ def radius_faults(account: Account, b: Fraction, c: Fraction) -> list[str]:
         distance = nearest_seen(account, v, v)
         if low[v] > distance:
             faults.append(f"{v}: a vertex is nearer than its radius")
-        if parent < 0:  # it was removed since
+        if parent < 0:  # it was removed since, and its radius with it: left is what follows from all radii: lfs <= D r
+            size = local_feature_size_squared(account.points[v], account.points[: account.given], account.segments)
+            if high[v] * grading_constant(b, c) ** 2 < size:
+                faults.append(f"{v}: nearer than lfs / D")
             continue
         if kind == INTERIOR and high[v] < b * b * low[parent]:
             faults.append(f"{v}: inside, nearer than B times the radius of {parent}")

@@ -15,6 +15,7 @@ from proofs_tests.refinement import oracle as refine_oracle
 from proofs_tests.refinement.grading_oracle import (
     ENCROACHED,
     INTERIOR,
+    SLACK,
     SQRT2,
     YIELDED,
     Account,
@@ -207,6 +208,25 @@ class TestInsertionRadii:
         domain = DOMAINS["square"]
         needless = refine(domain, min_angle=14.47, unsuitable=near_the_corner)
         assert radius_faults(account_of(needless, domain), Fraction(2), 1 / SQRT2) != []
+
+    def test_slack(self) -> None:
+        """Differences, squares, their sum, the root and its own square in fractions: six roundings at most."""
+        u = Fraction(1, 2**53)
+        assert (1 + u) ** 6 - 1 <= SLACK
+        assert 1 - (1 - u) ** 6 <= SLACK
+
+    def test_control_half_of_the_slack(self) -> None:
+        """2^-51."""
+        assert (1 + Fraction(1, 2**53)) ** 6 - 1 > SLACK / 2
+
+    def test_control_parents_that_were_removed_hide_nothing(self) -> None:
+        """No parent is known, and all radii are a hundredth of what they were."""
+        domain = DOMAINS["point near the side"]
+        account = account_of(refined(domain, 14.47), domain)
+        account = account._replace(parents=[-1] * len(account.kinds))
+        assert radius_faults(account, Fraction(2), 1 / SQRT2) == []
+        tiny = account._replace(radii=[r / 100 for r in account.radii])
+        assert any("lfs / D" in fault for fault in radius_faults(tiny, Fraction(2), 1 / SQRT2))
 
     @pytest.mark.parametrize("wrong", ["radii", "parents"])
     def test_control_a_wrong_account(self, wrong: str) -> None:

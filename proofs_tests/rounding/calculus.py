@@ -73,6 +73,11 @@ def _sorted(name: str, one: Tree, other: Tree) -> Tree:
     return (name, *sorted((one, other), key=repr))
 
 
+def is_power_of_two(x: Fraction) -> bool:
+    """Whether a product with it does not round."""
+    return (x.numerator & (x.numerator - 1)) == (x.denominator & (x.denominator - 1)) == 0 < x
+
+
 def _factors(tree: Tree) -> tuple[Fraction, list[Tree]]:
     """The product of the bound and constants in a tree, and what else it is multiplied with."""
     if tree[0] in ("bound", "constant"):
@@ -80,6 +85,7 @@ def _factors(tree: Tree) -> tuple[Fraction, list[Tree]]:
     if tree[0] == "*":
         (c, rest), (d, more) = _factors(tree[1]), _factors(tree[2])
         if not (rest and more):  # else it is a product of the permanent's own
+            assert is_power_of_two(c) or is_power_of_two(d), "else the product of the constants rounds"
             return c * d, rest + more
     return Fraction(1), [tree]
 

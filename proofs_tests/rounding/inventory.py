@@ -1,91 +1,113 @@
-"""Which functions of the code compare with a floating-point bound, found in their sources."""
+"""Which lines of the code compute or compare with a floating-point bound, found in their sources.
+
+In compiled functions: every line with a constant of its module that is a double, with a bound of the context, with a
+negative power of two, and every line that computes, or compares with, a local error, margin, doubt, slack, bound or
+limit. In the others, which prepare or format: every line with a constant that is named as bounds are, or a bound of the
+context.
+"""
 
 import ast
+import importlib
+import math
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
-__all__ = ["ELSEWHERE", "functions_with_bounds"]
+__all__ = ["Line", "lines_with_bounds"]
 
 ROOTS = (Path(__file__).resolve().parents[2] / "kernel", Path(__file__).resolve().parents[2] / "mesh")
 
 #: Names of bounds, margins and guards, in the code's own manner of speaking.
 _NAMES = re.compile(
-    r"\w*(BOUND|MARGIN|SLACK|ERROR|DOUBT|FACTOR|WEIGHT|UNDERFLOW|RELATIVE|ABSOLUTE|ROUNDOFF|SMALL|TINY|CLEAR|ENOUGH|PRODUCT|STEPS)"
+    r"\w*(BOUND|MARGIN|SLACK|ERROR|DOUBT|FACTOR|WEIGHT|UNDERFLOW|RELATIVE|ABSOLUTE|ROUNDOFF|SMALL|ENOUGH|PRODUCT|STEPS"
+    r"|SAFE|M(IN|AX)_COORDINATE|LOST_BITS)\w*"
 )
+_INTEGERS = frozenset({"_LOST_BITS", "_SMALLEST_EXPONENT"})  # of powers of two
+_LOCALS = re.compile(r"(\w*_)?(error|margin|doubt|slack|bound|limit)")
 _ATTRIBUTES = frozenset({"orient2d_bound", "incircle_bound", "grid_limit"})
-_NO_BOUNDS = frozenset({"MEASURE_BOUND", "_STEPS", "_CHILD_ERROR"})  # a limit of exact comparisons; of a walk
+#: A limit of exact comparisons; of a walk; and what numbers the questions to the rationals.
+_NO_BOUNDS = frozenset({"MEASURE_BOUND", "_STEPS", "_CHILD_ERROR", "ANGLE", "AREA", "LENGTH"})
 
 _DECIDES_NOTHING = frozenset({"strategies", "plot.py"})
 
-_CALCULUS = "test_filter.py: the exact calculus of rounding errors, on the source itself"
-_SAME = "calls a filter that is proved, with the bound of the context"
-_CHOICE = "looks whether the input is inside the window, compares nothing with it"
-_EXACT = "only prefers or limits; what is answered is checked exactly"
 
-#: Functions that name a bound and are covered by another proof, or decide nothing by it.
-ELSEWHERE: dict[str, str] = {
-    "exactkernel.angle.angle_above_adaptive": _SAME,
-    "exactkernel.bisector.bisector_crossing": "dd_cross and quotient_offset, with the same guards",
-    "exactkernel.bisector.crossing_order_adaptive": _CALCULUS,
-    "exactkernel.centre.circumcentre_in_pairs": "dd_cross and quotient_offset; 2^-10 guards the latter",
-    "exactkernel.context.chunk_size": _CHOICE,
-    "exactkernel.context.exponent_into_window": _CHOICE,
-    "exactkernel.context.scaled_into_window": _CHOICE,
-    "exactkernel.crossing.crossing_in_pairs": "dd_cross and quotient_offset; 2^-10 guards the latter",
-    "exactkernel.diametral.diametral_adaptive": _SAME,
-    "exactkernel.incircle.incircle_adaptive": _SAME,
-    "exactkernel.incircle.incircle_perturbed_adaptive": _SAME,
-    "exactkernel.orient2d.orient2d_adaptive": _SAME,
-    "exactmesh.cavity.split_along": "the number of corners of a small polygon",
-    "exactmesh.crossings.segment_meetings._neighbours_first": "an order in which pairs are looked at",
-    "exactmesh.editing.draft.fitted": _CHOICE,
-    "exactmesh.ordering._along_curves": "an order in which points are inserted",
-    "exactmesh.refinement.layout.laid_out": _CHOICE,
-    "exactmesh.refinement.placement.place_centre": _EXACT,
-    "exactmesh.refinement.split_point._most_halves": _EXACT,
-    "exactmesh.verify.delaunay._edges": "hands the constant to exact comparisons: rounding-sized or not",
-    "exactmesh.verify.delaunay.describe": "hands the constant to exact comparisons: rounding-sized or not",
-    "exactmesh.verify.duality._leaves": "compares fractions",
-    "exactmesh.verify.gabriel.check_gabriel": "hands the constant to exact comparisons: rounding-sized or not",
-    "exactmesh.verify.gabriel.describe": "hands the constant to exact comparisons: rounding-sized or not",
-    "exactmesh.verify.grading.decide": "compares fractions",
-    "exactmesh.verify.grading.grade_circles": "hands the constant to grade, which is proved",
-    "exactmesh.verify.grading.grade_diametral": "hands the constant to grade, which is proved",
-    "exactmesh.verify.grading.rank_angles": _CHOICE,
-    "exactmesh.verify.grading.rank_areas": _CHOICE,
-    "exactmesh.verify.grading.rank_circles": _CHOICE,
-    "exactmesh.verify.grading.rank_diametral": _CHOICE,
-    "exactmesh.verify.grading.rank_lengths": _CHOICE,
-    "exactmesh.verify.nearest.nearest_corners": "repeats what find_nearest does, which is proved",
-    "exactmesh.voronoi.cavity._centre": "an error that coordinates_of compares",
-    "exactmesh.voronoi.cavity.coordinates_of": "decides no sign, but whether weights have 50 bits, by a factor of two",
-}
+@dataclass(frozen=True)
+class Line:
+    """A statement, or what an ``if`` or a loop asks.
+
+    Attributes:
+        function: module.function.
+        text: with single spaces.
+        bounds: the bounds that it names, as they are written.
+    """
+
+    function: str
+    text: str
+    bounds: frozenset[str]
+
+    def is_in(self, cited: str) -> bool:
+        """Tell whether a line that is cited is this one, or a part of it with all of its bounds."""
+        shorter = re.sub(r"^(?:if|elif|while) |:$", "", cited)
+        part = re.search(rf"(?:^|[\s(]){re.escape(shorter)}(?:$|[\s),])", self.text) is not None
+        return self.text in shorter or (part and all(bound in shorter for bound in self.bounds))
 
 
-def _is_bound(node: ast.AST) -> bool:
-    if isinstance(node, ast.Name):
-        return _NAMES.fullmatch(node.id) is not None and node.id not in _NO_BOUNDS
-    if isinstance(node, ast.Attribute):
-        return node.attr in _ATTRIBUTES
-    return (
-        isinstance(node, ast.BinOp)
-        and isinstance(node.op, ast.Pow)
-        and isinstance(node.right, ast.UnaryOp)
-        and isinstance(node.left, ast.Constant)
-    )
+def _is_compiled(function: ast.FunctionDef) -> bool:
+    return any(isinstance(d, ast.Name) and d.id in ("jit", "jit_inline") for d in function.decorator_list)
 
 
-def _of_file(path: Path, root: Path) -> Iterator[str]:
-    module = ".".join(path.relative_to(root).with_suffix("").parts)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef) and any(
-            _is_bound(inner) for line in node.body for inner in ast.walk(line)
-        ):
-            yield f"{module}.{node.name}"
+def _is_constant(module: ModuleType, name: str) -> bool:
+    value = getattr(module, name, None)
+    return isinstance(value, float) and math.isfinite(value)
 
 
-def functions_with_bounds() -> set[str]:
-    """Return module.function of each function that names a bound, or writes a negative power of two."""
-    files = [(path, root) for root in ROOTS for path in root.rglob("*.py") if not _DECIDES_NOTHING & set(path.parts)]
-    return {name for path, root in files for name in _of_file(path, root)}
+def _bounds_in(node: ast.AST, module: ModuleType, compiled: bool, compared: bool) -> set[str]:
+    """Return the bounds in an expression."""
+    compared |= isinstance(node, ast.Compare)
+    found = set()
+    if isinstance(node, ast.Name) and node.id not in _NO_BOUNDS:
+        named = _is_constant(module, node.id) and (compiled or _NAMES.fullmatch(node.id) is not None)
+        if named or node.id in _INTEGERS or (compiled and compared and _LOCALS.fullmatch(node.id)):
+            found.add(node.id)
+    elif isinstance(node, ast.Attribute) and node.attr in _ATTRIBUTES:
+        found.add(node.attr)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow) and isinstance(node.right, ast.UnaryOp):
+        found.add(ast.unparse(node))
+    return found.union(*(_bounds_in(inner, module, compiled, compared) for inner in ast.iter_child_nodes(node)))
+
+
+def _statements(node: ast.AST) -> Iterator[ast.stmt]:
+    """Yield the statements of a function, not those of functions inside it."""
+    for inner in ast.iter_child_nodes(node):
+        if isinstance(inner, ast.expr | ast.FunctionDef | ast.ClassDef):
+            continue
+        if isinstance(inner, ast.stmt):
+            yield inner
+        yield from _statements(inner)  # of the cases of a match, too
+
+
+def _lines_of(function: ast.FunctionDef, module: ModuleType, text: str) -> Iterator[Line]:
+    compiled, name = _is_compiled(function), f"{module.__name__}.{function.name}"
+    for statement in _statements(function):
+        asked = [inner for inner in ast.iter_child_nodes(statement) if isinstance(inner, ast.expr)]
+        computes = compiled and any(isinstance(inner, ast.Name) and _LOCALS.fullmatch(inner.id) for inner in asked[:1])
+        bounds = set().union(*(_bounds_in(inner, module, compiled, computes) for inner in asked[computes:]))
+        if bounds or computes:
+            part = asked[0] if hasattr(statement, "body") else statement
+            yield Line(name, " ".join((ast.get_source_segment(text, part) or "").split()), frozenset(bounds))
+
+
+def lines_with_bounds() -> list[Line]:
+    """Return the lines of the kernel and of the mesh library that compute a bound or compare with one."""
+    found = []
+    for root in ROOTS:
+        for path in sorted(root.rglob("*.py")):
+            text = path.read_text(encoding="utf-8")
+            if _DECIDES_NOTHING & set(path.parts) or not ("jit" in text or _NAMES.search(text) or "_bound" in text):
+                continue
+            module = importlib.import_module(".".join(path.relative_to(root).with_suffix("").parts))
+            functions = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
+            found += [line for function in functions for line in _lines_of(function, module, text)]
+    return found

@@ -102,12 +102,16 @@ class TestConstants:
             assert decision.is_permanent
             assert 0 < decision.needed <= decision.shipped
 
+    @staticmethod
+    def needed_for_angles() -> Fraction:
+        product = Bounded(U) * Bounded(U)
+        trigonometric = Bounded(U * (1 + U))  # a pair's head, nearest to a value 2^-1000 from the cosine
+        return largest_needed(((product + product) * trigonometric).e)
+
     def test_angle(self) -> None:
         """The filter of angles takes products: cross and dot are sums of two, sine and cosine err by u."""
         recorder = Recorder()
-        product = Bounded(U) * Bounded(U)
-        trigonometric = Bounded(U * (1 + U))  # a pair's head, nearest to a value 2^-1000 from the cosine
-        assert largest_needed(((product + product) * trigonometric).e) + 5 * U <= Fraction(SHAPE_BOUND)
+        assert self.needed_for_angles() <= Fraction(SHAPE_BOUND)
         (ax, ay), (bx, by), (cx, cy) = recorder.pair("a"), recorder.pair("b"), recorder.pair("c")
         ux, uy, vx, vy = bx - ax, by - ay, cx - ax, cy - ay
         sums = (ux * vy - uy * vx, abs(ux * vy) + abs(uy * vx), ux * vx + uy * vy, abs(ux * vx) + abs(uy * vy))
@@ -117,7 +121,8 @@ class TestConstants:
         assert [decision.is_permanent for decision in recorder.found] == [True, True]
 
     def test_control_smaller_constants_are_refused(self) -> None:
-        """(3 + 11 u) u, (10 + 74 u) u, and (4 + 13 u) u: below what the calculus asks for."""
+        """(3 + 11 u) u, (10 + 74 u) u, and (4 + 13 u) u, and half of the bound of angles: below what is asked for."""
+        assert self.needed_for_angles() > Fraction(SHAPE_BOUND) / 2
         assert found("orient2d")[0].needed > (3 + 11 * U) * U
         assert found("incircle")[0].needed > (10 + 74 * U) * U
         assert found("nearer")[0].needed > (4 + 13 * U) * U

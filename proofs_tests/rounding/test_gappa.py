@@ -2,11 +2,12 @@
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
-from proofs_tests.rounding.inventory import ELSEWHERE, functions_with_bounds
+from proofs_tests.rounding.elsewhere import NOTHING_TO_PROVE, PROVED
+from proofs_tests.rounding.inventory import Line, lines_with_bounds
 from proofs_tests.rounding.scripts import (
     STANDARD_AXIOMS,
     Control,
@@ -25,6 +26,17 @@ pytestmark = pytest.mark.once  # the provers read sources
 SCRIPTS = scripts()
 NAMES = [script.name for script in SCRIPTS]
 CONTROLS = [(script, control) for script in SCRIPTS for control in script.controls]
+
+CITED = {cited for script in SCRIPTS for cited in script.code}
+#: An empty line stands for all of a function's.
+LISTED = {
+    (function, line)
+    for listed in (PROVED, NOTHING_TO_PROVE)
+    for functions in listed.values()
+    for function, lines in functions.items()
+    for line in lines or ("",)
+}
+LINES = lines_with_bounds()
 
 REQUIRED = os.environ.get("EXACTMESH_REQUIRE_PROVERS") == "1"
 INSTALL = "apt-get install gappa libcoq-gappa libcoq-flocq coq"
@@ -59,11 +71,27 @@ class TestHeads:
         for function, line in script.code:
             assert line in source_of(function), f"{script.name}.g models what {function} is no longer"
 
+    @staticmethod
+    def uncovered(known: Iterable[tuple[str, str]]) -> list[Line]:
+        """The lines with a bound that nothing known proves."""
+        lines: dict[str, list[str]] = {}
+        for function, line in known:
+            lines.setdefault(function, []).append(line)
+        return [x for x in LINES if not any(not line or x.is_in(line) for line in lines.get(x.function, []))]
+
     def test_every_bound_is_covered(self) -> None:
-        cited = {function for script in SCRIPTS for function, _ in script.code}
-        found = functions_with_bounds()
-        assert found - cited - set(ELSEWHERE) == set(), "bounds that nothing proves"
-        assert set(ELSEWHERE) <= found, "bounds that are no longer there"
+        assert self.uncovered(CITED | LISTED) == [], "bounds that nothing proves"
+
+    def test_every_entry_is_needed(self) -> None:
+        uncited = self.uncovered(CITED)
+        for function, line in LISTED:
+            assert any(x.function == function and (not line or x.is_in(line)) for x in uncited), (function, line)
+
+    @pytest.mark.parametrize("place", PROVED)
+    def test_the_classes_that_prove_are_there(self, place: str) -> None:
+        file, _, name = place.partition("::")
+        text = (Path(__file__).resolve().parents[1] / file).read_text(encoding="utf-8")
+        assert f"\nclass {name}" in text
 
     def test_control_another_constant_is_noticed(self) -> None:
         """A constant that differs in the last bit from the one of the script."""
@@ -78,9 +106,12 @@ class TestHeads:
         assert line.replace("ax - cx", "ax + cx") not in source_of(function)
 
     def test_control_a_bound_without_a_proof_is_noticed(self) -> None:
-        """The inventory, with one script taken away."""
-        cited = {function for script in SCRIPTS if script.name != "grade" for function, _ in script.code}
-        assert functions_with_bounds() - cited - set(ELSEWHERE) == {"exactmesh.verify.grading.grade"}
+        """The inventory, with one script taken away, and with one line of another one."""
+        without = {c for script in SCRIPTS if script.name != "grade" for c in script.code}
+        assert {x.function for x in self.uncovered(without | LISTED)} == {"exactmesh.verify.grading.grade"}
+        line = "if abs(high) < _SMALLEST_PRODUCT:"
+        left = self.uncovered({c for c in CITED if c[1] != line} | LISTED)
+        assert [(x.function, x.text) for x in left] == [("exactkernel.crossing._coordinate", line[3:-1])]
 
 
 @pytest.mark.obligation(

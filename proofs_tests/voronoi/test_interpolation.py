@@ -56,7 +56,7 @@ def largest_error(mesh: Triangulation, queries: FloatArray, found: NaturalNeighb
 
 
 @pytest.mark.obligation(
-    "D6", "Sibson's coordinates are the parts of the stolen cell, to 50 bits", method="property-based"
+    "D6", "Sibson's coordinates are the parts of the stolen cell, to 2^-50 of it", method="property-based"
 )
 class TestCoordinates:
     """The coordinates are the areas that brute force in fractions finds; they add up to 1, and to the point."""

@@ -3,7 +3,7 @@
 The triangles whose circumcircles contain the point q are its cavity. From a vertex b of the cavity's boundary, between
 a and c on it, the cell of q takes the polygon of the centres of qab, of the cavity's triangles at b, and of qbc. All
 centres are taken relative to q in double-double, and so are the areas: the slimmer the cells, the more bits are lost.
-Where the bounds leave less than 50, the rationals answer.
+Where all areas together may err by more than 2^-50 of their sum, the rationals answer.
 """
 
 import math

@@ -68,7 +68,8 @@ def natural_neighbors(points_or_mesh: npt.ArrayLike | Triangulation, at: npt.Arr
     """Return for each point the sites from which its cell would take, and which part of it: Sibson's coordinates.
 
     A point is the sum of its natural neighbours weighted by its coordinates; on the hull, the two ends of the edge are
-    the limits. Which triangle a point is in, and which circles, is decided exactly; the areas are right to 50 bits.
+    the limits. Which triangle a point is in, and which circles, is decided exactly; all areas together err by
+    less than 2^-50 of their sum, before that is rounded.
 
     Args:
         points_or_mesh: the sites (n, 2), or a Delaunay triangulation of them.

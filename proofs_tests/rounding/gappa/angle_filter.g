@@ -14,6 +14,10 @@
 #   | sign = angle_filter(SHAPE_FACTOR * k.orient2d_bound, angle, cross, crosses, max(max(da, db), dc), dots)
 # code: exactkernel.angle.corner_code
 #   | sign = angle_filter(SHAPE_FACTOR * ORIENT2D_BOUND, angle, cross, crosses, dot, dots)
+# code: exactkernel.angle.angle_above_adaptive
+#   | sign = angle_filter(SHAPE_FACTOR * k.orient2d_bound, angle, cross, crosses, min(min(da, db), dc), dots)
+# code: exactkernel.angle.beyond
+#   | return 1 if det > error else (-1 if -det > error else 0)
 # constant: 0x1.8000000000004p-50 = exactkernel.constants.SHAPE_FACTOR * exactkernel.constants.ORIENT2D_BOUND
 # constant: 1b-224 = 2^-1074 / exactkernel.constants.SMALLEST_WEIGHT
 # control, half of the factor: 0x1.8000000000004p-50 => 0x1.8000000000004p-51

@@ -9,6 +9,8 @@
 #   | return beyond((left - right) - twice, factor * weight)
 # code: exactkernel.measure.area_above_adaptive
 #   | sign = area_filter(SHAPE_FACTOR * k.orient2d_bound, bound, bx - ax, by - ay, cx - ax, cy - ay)
+# code: exactkernel.measure.area_code
+#   | sign = area_filter(SHAPE_FACTOR * ORIENT2D_BOUND, bound, ux, uy, vx, vy)
 # constant: 0x1.8000000000004p-50 = exactkernel.constants.SHAPE_FACTOR * exactkernel.constants.ORIENT2D_BOUND
 # control, a quarter of the factor: 0x1.8000000000004p-50 => 0x1.8000000000004p-52
 # control, the comparison is left out: /\ det - K >= 0 =>

@@ -6,6 +6,7 @@
 #   | above = (x - math.nextafter(claimed, -math.inf)) + tail
 #   | doubt = _SLACK * error + 2.0**-50 * (abs(above) + abs(below)) + 2.0**-1000
 #   | if above > doubt and below > doubt:
+#   | return NO if above < -doubt or below < -doubt else UNKNOWN
 # constant: 0x1.00001p0 = exactmesh.verify.dual_passes._SLACK
 # control, a quarter of the doubt: 1b-50 => 1b-52
 # control, no slack: 0x1.00001p0 => 0x1p0

@@ -7,6 +7,8 @@
 #   | det = doubled * (sx * wy - sy * wx) + (sx * y - sy * x)
 #   | permanent = doubles * (abs(sx * wy) + abs(sy * wx)) + (abs(sx) * ys + abs(sy) * xs)
 #   | error = 0.0 if largest <= k.grid_limit else _FACTOR * k.incircle_bound * permanent
+#   | if det > error:
+#   | if -det > error:
 # constant: 0x1.4000000000006p-49 = exactmesh.verify.centres._FACTOR * exactkernel.constants.INCIRCLE_BOUND
 # control, half of the factor: 0x1.4000000000006p-49 => 0x1.4000000000006p-50
 # control, the comparison is left out: /\ det - K >= 0 =>

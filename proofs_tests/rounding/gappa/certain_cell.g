@@ -7,6 +7,7 @@
 #   | above = (x - cell) + tail  # the difference is exact
 #   | margin = error + 2.0**-52 * (abs(above) + error)
 #   | if above - 0.5 >= margin and above + margin < 1.5:
+#   | return cell, bool(above + margin < 0.5 and above + 0.5 >= margin)
 # control, an eighth of the margin: 1b-52 => 1b-55
 # control, the sum rounds twice as badly: |r4| <= 1b-53 => |r4| <= 1b-51
 

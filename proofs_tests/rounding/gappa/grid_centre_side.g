@@ -5,6 +5,8 @@
 #   | x, y = vy * u - uy * v, ux * v - vx * u
 #   | det = doubled * (sx * wy - sy * wx) + (sx * y - sy * x)
 #   | error = 0.0 if largest <= k.grid_limit else _FACTOR * k.incircle_bound * permanent
+#   | error = 0.0 if largest <= k.grid_limit else _FACTOR * k.incircle_bound * permanent
+#   | return 0 if error == 0.0 else UNKNOWN
 # constant: 0x1p12 = exactkernel.constants.GRID_STEPS
 # control, the limit is too large: <= 0x1p12 => <= 0x1p14
 # control, differences off the grid: @FIX(ux, 0) => @FIX(ux, -5)

@@ -5,10 +5,15 @@
 # code: exactkernel.orient2d.orient2d_slow
 #   | det = p * q - r * s
 #   | return GRID + (1 if det > 0.0 else (-1 if det < 0.0 else 0))
+#   | if max(max(abs(p), abs(q)), max(abs(r), abs(s))) <= c.grid_limit:
 # code: exactkernel.diametral.diametral_slow
 #   | det = p * q - r * s
+#   | if max(max(abs(p), abs(q)), max(abs(r), abs(s))) <= c.grid_limit:
 # code: exactkernel.angle.corner_code
 #   | return GRID + sign_of(angle.sine * dot - angle.cosine * cross)
+#   | if angle.is_exact and max(max(abs(ux), abs(uy)), max(abs(vx), abs(vy))) <= k.grid_limit:
+# code: exactkernel.measure.area_code
+#   | if max(max(abs(ux), abs(uy)), max(abs(vx), abs(vy))) <= k.grid_limit:
 # constant: 0x1p12 = exactkernel.constants.GRID_STEPS
 # control, the limit is too large: <= 0x1p12 => <= 0x1p27
 # control, differences off the grid: @FIX(p, 0) => @FIX(p, -50)

@@ -6,6 +6,8 @@
 # code: exactmesh.verify.centres.centre_side
 #   | det = doubled * (sx * wy - sy * wx) + (sx * y - sy * x)
 #   | error = 0.0 if largest <= k.grid_limit else _FACTOR * k.incircle_bound * permanent
+# code: exactkernel.incircle.incircle_slow
+#   | within = max(max(max(abs(a), abs(A)), max(abs(b), abs(B))), max(abs(c), abs(C))) <= k.grid_limit
 # constant: 0x1p12 = exactkernel.constants.GRID_STEPS
 # control, the limit is too large: <= 0x1p12 => <= 0x1p14
 # control, differences off the grid: @FIX(a, 0) => @FIX(a, -5)

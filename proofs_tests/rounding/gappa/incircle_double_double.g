@@ -11,8 +11,11 @@
 # code: exactkernel.incircle.incircle_slow
 #   | bound = DD_BOUND * permanent
 #   | if det > bound:
+#   | if -det > bound:
 # code: exactkernel.bisector._crossing_order_exact
 #   | error = DD_BOUND * (nw_permanent * dv_permanent + nv_permanent * dw_permanent)
+#   | if det > error:
+#   | if -det > error:
 # constant: 0x1p-100 = exactkernel.constants.DD_BOUND
 # control, a quarter of the bound: 0x1p-100 => 0x1p-102
 # control, the comparison is left out: /\ det - K >= 0 =>

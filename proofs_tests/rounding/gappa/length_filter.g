@@ -10,6 +10,8 @@
 #   | return beyond(squared - limit, factor * weight)
 # code: exactkernel.measure.length_above_adaptive
 #   | sign = length_filter(SHAPE_FACTOR * k.orient2d_bound, bound, bx - ax, by - ay)
+# code: exactkernel.measure.length_code
+#   | sign = length_filter(SHAPE_FACTOR * ORIENT2D_BOUND, bound, bx - ax, by - ay)
 # constant: 0x1.8000000000004p-50 = exactkernel.constants.SHAPE_FACTOR * exactkernel.constants.ORIENT2D_BOUND
 # constant: 1b-224 = 2^-1074 / exactkernel.constants.SMALLEST_WEIGHT
 # control, a sixth of the constant: 0x1.8000000000004p-50 => 0x1p-52

@@ -8,6 +8,7 @@
 #   | apart += apart_tail + (2.0 * cross_tail - reach_tail - ux_tail - uy_tail)
 #   | 4.0 * error + 32.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF * (2.0 * cross + reach) + 4.0 * UNIT_ROUNDOFF * abs(apart)
 #   | if apart > doubt:
+#   | return 1 if apart < -doubt else -1
 # constant: 1b-53 = exactkernel.constants.UNIT_ROUNDOFF
 # control, a thirty-second of the doubt: 32 * 1b-106 => 1b-106
 # control, no allowance for the last rounding: 4 * (1 + g2) => 0x1p-1 * (1 + g2)

@@ -5,6 +5,7 @@
 #   | to_p, to_q = ux * ux + uy * uy, vx * vx + vy * vy
 #   | error = _NEARER_BOUND * (to_p + to_q)
 #   | if to_p - to_q > error:
+#   | if to_q - to_p > error:
 # constant: 0x1.0000000000004p-51 = exactkernel.bisector._NEARER_BOUND
 # control, no second-order term: 0x1.0000000000004p-51 => 0x1p-51
 # control, the comparison is left out: /\ w - K >= 0 => 

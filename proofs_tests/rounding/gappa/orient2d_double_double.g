@@ -6,10 +6,13 @@
 #   | det, _ = dd_add(left, left_tail, -right, -right_tail)
 #   | bound = DD_BOUND * (abs(left) + abs(right))
 #   | if det > bound:
+#   | if -det > bound:
 # code: exactkernel.crossing.dd_cross
 #   | return high, low, DD_BOUND * (abs(left) + abs(right))
 # code: exactkernel.bisector.nearer_adaptive
 #   | error = DD_BOUND * (p + q)
+#   | if difference > error:
+#   | if -difference > error:
 # constant: 0x1p-100 = exactkernel.constants.DD_BOUND
 # control, an eighth of the bound: 0x1p-100 => 0x1p-103
 # control, the comparison is left out: /\ det - K >= 0 =>

@@ -12,9 +12,13 @@
 # code: exactkernel.bisector.along_adaptive
 #   | left, right = wx * dx, wy * dy
 #   | error = ORIENT2D_BOUND * (abs(left) + abs(right))
+#   | if left + right > error:
+#   | if -(left + right) > error:
 # code: exactmesh.verify.bottleneck.is_ahead
 #   | left, right = ux * dx, uy * dy
 #   | error = ORIENT2D_BOUND * (abs(left) + abs(right))
+#   | if left + right > error:
+#   | if -(left + right) > error:
 # code: exactmesh.cavity.is_nearer
 #   | if k.orient2d_bound == math.inf or abs(difference) > k.orient2d_bound * (abs(left) + abs(right)):
 # constant: 0x1.8000000000004p-52 = exactkernel.constants.ORIENT2D_BOUND

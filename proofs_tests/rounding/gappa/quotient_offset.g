@@ -14,6 +14,12 @@
 #   | q, q_tail = fast_two_sum(high, ((p - m) + (p_tail - m_tail)) / det)
 #   | error = num_error * abs(u / det) + abs(q) * (det_error / abs(det) + DD_BOUND)
 #   | return x, x_tail, _SLACK * (error + DD_BOUND * abs(x))
+# code: exactkernel.crossing.crossing_in_pairs
+#   | if det_error > _SMALL * abs(det):
+# code: exactkernel.centre.circumcentre_in_pairs
+#   | if det_error > _SMALL * abs(det) or det == 0.0:
+# code: exactkernel.bisector.bisector_crossing
+#   | if det == 0.0 or det_error > _SMALL * abs(det):
 # constant: 1b-10 = exactkernel.centre._SMALL
 # constant: 1b-10 = exactkernel.crossing._SMALL
 # constant: 1b-10 = exactkernel.bisector._SMALL

@@ -12,6 +12,8 @@
 #   | if min(first, last) > c + error:
 #   | t = (c - f) / (g - f)
 #   | slack = 4.0 * error / (abs(g - f) - 2.0 * error) + 8.0 * UNIT_ROUNDOFF
+#   | elif max(first, last) < c - error:
+#   | elif abs(g - f) > 4.0 * error:
 # code: exactmesh.crossings.segment_tree.box_pieces
 #   | first, last = a + low * (b - a), a + high * (b - a)
 #   | error += _BOX_ERROR * (abs(a) + abs(b))
