@@ -121,11 +121,10 @@ def _statements(file: str) -> list[range]:
 
 
 def _is_marker(node: NodeOrLeaf) -> bool:
-    """Tell whether a star makes the parameters after it keywords: cosmic-ray takes it for a product."""
-    if not isinstance(node, PythonLeaf) or node.value != "*":
+    """Tell whether stars unpack, or make parameters keywords: cosmic-ray takes them for products and powers."""
+    if not isinstance(node, PythonLeaf) or node.value not in ("*", "**"):
         return False
-    following: PythonLeaf | None = node.get_next_leaf()  # type: ignore[no-untyped-call]  # parso's types end here
-    return following is not None and following.value == ","
+    return node.parent is None or node.parent.type not in ("term", "power")
 
 
 def _is_zero(number: Number) -> bool:

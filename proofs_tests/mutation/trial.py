@@ -98,6 +98,8 @@ def _forked(action: Callable[[], object]) -> Outcome:
     if last.startswith("["):
         outcome, test = json.loads(last)
         return outcome, test
+    if not (os.WIFSIGNALED(status) or last):
+        raise RuntimeError("no test was run: is the mutant a program?")
     return ("timeout" if os.WIFSIGNALED(status) else "killed"), last
 
 
