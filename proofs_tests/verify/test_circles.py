@@ -36,7 +36,9 @@ def told_once(finding: Finding) -> dict[tuple[int, ...], Violation]:
     return found
 
 
-@pytest.mark.obligation("V1", "what is said of circles is true, and complete", method="property-based")
+@pytest.mark.obligation(
+    "V3", "what is said of circles is true, and complete", method="property-based", control_in="mutants"
+)
 class TestCircles:
     """Each edge whose far corner is in the circle, each edge on the boundary or a segment whose third corner is in its
     own, and each unused point in the circle of its triangle is told, with the determinant and the rows."""

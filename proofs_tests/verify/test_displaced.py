@@ -117,7 +117,10 @@ class TestStraight:
 
 
 @pytest.mark.obligation(
-    "V1", "a chain goes strictly forward, and strictly between the perpendiculars", method="exhaustive"
+    "V1",
+    "a chain goes strictly forward, and strictly between the perpendiculars",
+    method="enumeration",
+    control_in="mutants",
 )
 class TestForward:
     """A vertex anywhere beside a segment whose ends are anywhere beside corners: it is on the chain iff all chains in

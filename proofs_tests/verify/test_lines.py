@@ -41,7 +41,9 @@ class TestOrder:
         assert [*lines_of(report)][-2] == "  not claimed:"
 
 
-@pytest.mark.obligation("V2", "the first three violations are told, and how many more", method="enumeration")
+@pytest.mark.obligation(
+    "V3", "the first three violations are told, and how many more", method="enumeration", control_in="mutants"
+)
 class TestShown:
     """Of any number."""
 
