@@ -78,7 +78,7 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("name", ["right", "noisy"])
     def test_control_no_fault_is_found_where_there_is_none(self, name: str) -> None:
-        """None: a right mesher, and one that prints, are acquitted."""
+        """A right mesher, and one that prints, in place of those with faults: both are acquitted."""
         result = check(f"{PLACE}:{name}", max_size=12, max_examples=60, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
@@ -86,7 +86,7 @@ class TestPlantedFaults:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_has_none(self, task: Task) -> None:
-        """None: exactmesh is acquitted."""
+        """exactmesh in place of those with faults: it is acquitted."""
         result = check("exactmesh", kind=task, max_size=20, max_examples=40, deadline=600.0, timeout=60.0)
         assert result.ok, str(result)
         assert result.complete
@@ -189,7 +189,7 @@ class TestCorpus:
 
     @pytest.mark.parametrize("task", Task)
     def test_control_exactmesh_does_not_fail(self, task: Task) -> None:
-        """None: exactmesh is acquitted on the same inputs."""
+        """exactmesh on the same inputs: it is acquitted."""
         cases = [case for case in CORPUS.values() if case.task is task and case.name != "9"]
         with MesherProcess(resolved("exactmesh", task)[0], Limits(60.0), segments=task is not Task.POINTS) as process:
             trial = Trial(process, task, "ccw")

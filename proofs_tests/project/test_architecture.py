@@ -155,3 +155,31 @@ class TestDocuments:
         with pytest.raises(AssertionError):
             run_blocks("text\n```python\nassert 1 == 2\n```\n", "bad")
         assert run_blocks("```sh\nls\n```\n", "another language") == 0
+
+
+class TestQuickSelection:
+    """Each line of quick.txt is a file of tests, or a class in one: pytest runs nothing at all if one is not."""
+
+    @staticmethod
+    def missing(lines: list[str]) -> list[str]:
+        found = []
+        for line in lines:
+            file, _, name = line.partition("::")
+            path = ROOT / file
+            names = (
+                {node.name for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ClassDef)}
+                if path.exists()
+                else set()
+            )
+            found += [] if path.exists() and name in {"", *names} else [line]
+        return found
+
+    def test_all_are_there(self) -> None:
+        lines = (ROOT / "proofs_tests" / "quick.txt").read_text(encoding="utf-8").split()
+        assert len(lines) > 70
+        assert not self.missing(lines)
+
+    def test_control_what_is_not_there(self) -> None:
+        """A class that is gone, and a file."""
+        lines = ["proofs_tests/mesh/test_quadedge.py::TestGone", "proofs_tests/test_gone.py"]
+        assert self.missing(lines) == lines
