@@ -21,7 +21,7 @@ What exactmesh claims, and how each claim is held: a theorem a line, then the te
 - The *faults* are negative controls: each is seeded by a test, and the same check must refuse it.
 
 Made from the markers of the tests by `python -m proofs_tests.obligations > docs/obligations.md`; the figures by
-`pytest --record-obligations proofs_tests/obligations.json`.
+`pytest --record-obligations=proofs_tests/obligations.json`.
 """
 
 

@@ -1,4 +1,4 @@
-"""pytest --record-obligations PATH: how many cases each test class tried, and the processor time that it took.
+"""pytest --record-obligations=PATH: how many cases each test class tried, and the processor time that it took.
 
 One case is one of: what a test reports by ``record_property("cases", n)``; else an example on which hypothesis ran the
 test to its end; else the test itself. Processor time, of child processes too, tells more than a clock where other work
