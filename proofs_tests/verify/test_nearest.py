@@ -88,8 +88,10 @@ class TestTree:
             assert found.tolist() == [squares.index(min(squares))]
         assert misled > 5
 
-    def test_room_on_the_stack(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        """Three numbers for each of the parts of 2^31 points that wait at once: one a level, and another one."""
+    @pytest.mark.parametrize("exponent", [-1000, 0, 1000])
+    def test_scale_and_room(self, exponent: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Coordinates are searched far above the absolute slack, whatever they were, and squares do not overflow; the
+        stack has three numbers for each part of 2^31 points that waits at the same time: one a level, and another."""
         rooms, levels = list[int](), math.ceil(math.log2(2**31 / 48))
 
         def recorded(
@@ -101,10 +103,11 @@ class TestTree:
             counts: IndexArray,
         ) -> None:
             rooms.append(len(stack))
+            assert 2.0**400 < max(np.abs(points).max(), np.abs(wanted).max()) <= 2.0**500
             found[:], counts[:] = 0, 1
 
         monkeypatch.setattr(nearest, "find_nearest", recorded)
-        nearest.nearest_corners(lattice(1, 5), np.arange(5), np.zeros((1, 2)))
+        nearest.nearest_corners(np.ldexp(lattice(1, 5), exponent), np.arange(5), np.zeros((1, 2)))
         assert rooms[0] >= 3 * (levels + 2)
 
     @pytest.mark.parametrize("seed", range(6))
