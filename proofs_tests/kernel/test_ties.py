@@ -1,7 +1,7 @@
 """K9: ties among cocircular points are broken consistently, so that the Delaunay triangulation is unique."""
 
 from collections.abc import Callable, Sequence
-from itertools import combinations, permutations
+from itertools import combinations, permutations, product
 from random import Random
 
 import pytest
@@ -57,6 +57,25 @@ class TestPerturbedSign:
         square = ((0, 0), (1, 0), (1, 1), (0, 1))
         assert not is_antisymmetric(incircle, square)
         assert not is_antisymmetric(ignoring_the_order, square)
+
+
+@pytest.mark.obligation(
+    "K9", "where two of four points coincide no tie is broken", method="exhaustive", control_in="mutants"
+)
+class TestCoincident:
+    """The lift belongs to the point: where two of the four are one point, the perturbed sign is 0 as incircle is,
+    whichever two places they have, and whether the point is the smallest or not."""
+
+    @pytest.mark.parametrize("others", [((1, 0), (1, 2), (0, 1)), ((2, 1), (-1, 1), (1, 2))])
+    def test_all_pairs_of_places(self, others: tuple[Cell, Cell, Cell]) -> None:
+        places = 0
+        for points in product(((0, 0), *others), repeat=4):
+            if len({*points}) < 4:
+                assert incircle_perturbed(*points) == 0
+                places += 1
+            else:
+                assert incircle_perturbed(*points) != 0
+        assert places == 4**4 - 24
 
 
 def triangulation(points: Sequence[Cell], predicate: Predicate) -> list[tuple[Cell, Cell, Cell]]:

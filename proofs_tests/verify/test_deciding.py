@@ -5,14 +5,17 @@ import struct
 from collections import defaultdict
 from collections.abc import Sequence
 from itertools import product
+from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from proofs_tests import oracles
+from proofs_tests.kernel.interpreted import calls_of
 from proofs_tests.oracles import Triangle
 
-from exactmesh.verify import Finding, Property, Verdict, verify
+from exactmesh.verify import Finding, Property, Verdict, constrained, verify
 from exactmesh.verify.domain import Outline
 from exactmesh.verify.hashing import array_sha256, domain_sha256
 
@@ -165,3 +168,52 @@ class TestHashes:
     def test_control_beyond(self) -> None:
         """2^63 is not the -2^63 that has its bits."""
         assert array_sha256(np.array([2**63], dtype="u8")) != array_sha256(np.array([-(2**63)]))
+
+
+@pytest.mark.obligation("V1", "what is decided of a domain's segments", method="named cases")
+class TestDomainSegments:
+    """A domain's segments are exempt from being Delaunay where the mesh has none of its own, not otherwise; and areas
+    of regions are looked at where they are claimed."""
+
+    POINTS: ClassVar[list[Place]] = [(0.0, 0.0), (4.0, 0.0), (2.0, 1.0), (2.0, -1.0)]
+    TRIANGLES: ClassVar[list[Triangle]] = [(0, 1, 2), (0, 3, 1)]  # on both sides of the long diagonal
+    DOMAIN = SimpleNamespace(
+        points=POINTS,
+        segments=[(0, 3), (3, 1), (1, 2), (2, 0), (0, 1)],
+        holes=[],
+        regions=[(2.0, 0.5, 1.0, 5.0)],
+        rule="seeds",
+    )
+
+    @pytest.mark.parametrize(
+        ("segments", "verdict"), [(None, Verdict.HOLDS), ([(0, 1)], Verdict.HOLDS), ([(0, 2)], Verdict.FAILS)]
+    )
+    def test_exempt(self, segments: list[tuple[int, int]] | None, verdict: Verdict) -> None:
+        findings = verify(self.POINTS, self.TRIANGLES, segments=segments, domain=self.DOMAIN).findings
+        assert findings[Property.SEGMENTS_PRESENT].verdict is Verdict.HOLDS
+        assert findings[Property.CONSTRAINED_DELAUNAY].verdict is verdict
+
+    def test_control_not_at_all(self) -> None:
+        """Segments of the mesh, none of which is the diagonal."""
+        self.test_exempt([], Verdict.FAILS)
+
+    @pytest.mark.parametrize("claims", [(Property.ADMISSIBLE,), (Property.REGION_AREAS,)])
+    def test_areas_on_claim(self, claims: tuple[Property, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+        looked = calls_of(monkeypatch, constrained, "check_region_areas")
+        findings = verify(self.POINTS, self.TRIANGLES, domain=self.DOMAIN, claims=claims).findings
+        assert len(looked) == (Property.REGION_AREAS in claims)
+        assert (Property.REGION_AREAS in findings) is (Property.REGION_AREAS in claims)
+
+    @pytest.mark.parametrize(
+        ("unused", "triangles", "sweeps"),
+        [([(2.0, 0.5)], TRIANGLES, 1), ([], TRIANGLES, 0), ([(2.0, 0.5)], [(0, 1, 2), (0, 1, 2)], 0)],
+    )
+    def test_sweeps(
+        self, unused: list[Place], triangles: list[Triangle], sweeps: int, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Where the triangles are admissible, and some unused point may be covered by them."""
+        seen = calls_of(monkeypatch, constrained, "surveyed")
+        findings = verify([*self.POINTS, *unused], triangles, segments=[(0, 1)]).findings
+        assert len(seen) == sweeps
+        verdicts = {1: Verdict.FAILS, 0: Verdict.HOLDS if triangles == self.TRIANGLES else Verdict.UNDECIDED}
+        assert findings[Property.CONSTRAINED_DELAUNAY].verdict is verdicts[sweeps]

@@ -245,6 +245,39 @@ class TestPasses:
         assert {*sides} == {RESOLVED, ROUNDING_SIZED}
 
 
+@pytest.mark.obligation(
+    "V1", "areas and lengths are graded by all of their digits", method="property-based", control_in="mutants"
+)
+class TestTails:
+    """A value beside the border, by less than a unit of what cancels in it or is rounded off its bound, is graded as
+    fractions grade it."""
+
+    def test_areas(self) -> None:
+        """Of thin triangles: the two products of the area are far larger than itself, and round off as much."""
+        random, bound = Random(1), Fraction(MEASURE_BOUND)
+        for i in range(CASES):
+            ux, uy, t = (random.uniform(1, 2) for _ in range(3))
+            points = np.array([(0.0, 0.0), (ux, uy), (ux * t, uy * t + 2.0**-45)])
+            left, right = (Fraction(ux) * Fraction(points[2, 1]), Fraction(uy) * Fraction(points[2, 0]))
+            aimed = (bound + Fraction((-1) ** i, 2**60)) * (left + right)
+            limit = float((left - right - aimed) / (2 * (1 + bound)))
+            terms = left - right - 2 * Fraction(limit), left + right + 2 * Fraction(limit)
+            (grade,), _ = graded(areas_pass(limit), points, [1])
+            assert grade == side_of(terms, MEASURE_BOUND) == (ROUNDING_SIZED if i % 2 else RESOLVED)
+
+    def test_lengths(self) -> None:
+        """Of bounds whose squares are no doubles."""
+        random, bound = Random(2), Fraction(MEASURE_BOUND)
+        for i in range(CASES):
+            limit = random.uniform(1, 2)
+            y = limit * math.sqrt(2 * MEASURE_BOUND * (1 + (-1) ** i * 2.0**-8))
+            points = np.array([(0.0, 0.0), (limit, y), (0.5, 0.25)])
+            squares = Fraction(limit) ** 2 + Fraction(y) ** 2, Fraction(limit) ** 2
+            (grade,), _ = graded(lengths_pass(limit), points, [1])
+            beyond = squares[0] - squares[1] > bound * (squares[0] + squares[1])
+            assert grade == (RESOLVED if beyond else ROUNDING_SIZED) == (ROUNDING_SIZED if i % 2 else RESOLVED)
+
+
 @pytest.mark.obligation("V1", "a triangle is as wrong as its worst part", method="named cases", control_in="mutants")
 class TestWorstPart:
     """Of three edges or angles one that is wrong makes the triangle wrong; without any, one that double-doubles cannot

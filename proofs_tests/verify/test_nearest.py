@@ -53,6 +53,63 @@ class TestTree:
             assert z[low:middle].max(initial=-math.inf) <= z[middle] <= z[middle + 1 : high].min(initial=math.inf)
             parts += [(low, middle, 1 - axis), (middle + 1, high, 1 - axis)]
 
+    @pytest.mark.parametrize("n", [48, 97])
+    def test_parts_that_just_fit(self, n: int) -> None:
+        """Of a part that is not split every point is looked at, be it as large as such a part can be."""
+        points = lattice(n, n)
+        order, stack = nearest._tree(points), np.empty(192, dtype=np.intp)
+        for i, (x, y) in enumerate(points.tolist()):
+            found = np.full(n, -7, dtype=np.intp)
+            _, count = nearest.within_reach(points, order, x, y, 0.0, stack, found)
+            assert i in found[:count].tolist()
+
+    @pytest.mark.parametrize("seed", range(6))
+    def test_tiny(self, seed: int) -> None:
+        """Where squares are below the absolute slack as well, all that is within reach is found."""
+        points, far = np.ldexp(lattice(seed), -258), np.ldexp(1.0, -258)
+        order, stack = nearest._tree(points), np.empty(192, dtype=np.intp)
+        for x, y in (points[:30] + far).tolist():
+            squares = (points[:, 0] - x) ** 2 + (points[:, 1] - y) ** 2
+            reach, found = float(np.sort(squares)[9]), np.full(N, -7, dtype=np.intp)
+            _, count = nearest.within_reach(points, order, x, y, reach, stack, found)
+            assert sorted(found[:count].tolist()) == np.flatnonzero(squares <= reach).tolist()
+
+    def test_doubles_that_mislead(self) -> None:
+        """Of two corners that are nearly as near the nearer one, although rounded squares are in the other order."""
+        random, misled = Random(1), 0
+        for _ in range(300):
+            (a, b), angle = (random.uniform(1, 2), random.uniform(1, 2)), random.uniform(0, 7)
+            c, s = math.cos(angle), math.sin(angle)
+            points = np.array([(a, b), (c * a - s * b, s * a + c * b), (50.0, 50.0)])
+            squares = [x * x + y * y for x, y in oracles.rationals(points.tolist())]
+            rounded = (points**2).sum(axis=1)
+            misled += bool(rounded[0] != rounded[1] and (squares[0] < squares[1]) != (rounded[0] < rounded[1]))
+            found = nearest.nearest_corners(points, np.arange(3), np.zeros((1, 2)))
+            assert found.tolist() == [squares.index(min(squares))]
+        assert misled > 5
+
+    @pytest.mark.parametrize("exponent", [-1000, 0, 1000])
+    def test_scale_and_room(self, exponent: int, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Coordinates are searched far above the absolute slack, whatever they were, and squares do not overflow; the
+        stack has three numbers for each part of 2^31 points that waits at the same time: one a level, and another."""
+        rooms, levels = list[int](), math.ceil(math.log2(2**31 / 48))
+
+        def recorded(
+            points: FloatArray,
+            order: IndexArray,
+            wanted: FloatArray,
+            stack: IndexArray,
+            found: IndexArray,
+            counts: IndexArray,
+        ) -> None:
+            rooms.append(len(stack))
+            assert 2.0**400 < max(np.abs(points).max(), np.abs(wanted).max()) <= 2.0**500
+            found[:], counts[:] = 0, 1
+
+        monkeypatch.setattr(nearest, "find_nearest", recorded)
+        nearest.nearest_corners(np.ldexp(lattice(1, 5), exponent), np.arange(5), np.zeros((1, 2)))
+        assert rooms[0] >= 3 * (levels + 2)
+
     @pytest.mark.parametrize("seed", range(6))
     def test_within_reach(self, seed: int) -> None:
         points, random = lattice(seed), Random(seed)
