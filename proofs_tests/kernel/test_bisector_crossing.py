@@ -163,11 +163,13 @@ class TestErrors:
         assert nearest(0.0, 1.0, 1.0, 0.0, math.inf, 1.0, 0.0, 0.0)[1] is False
 
     def test_the_bound_of_nearer(self) -> None:
-        """The last difference is free: that of a lift. Nothing much is given away."""
+        """The last difference is free: that of a lift. Nothing much is given away, and a tie is within it."""
         difference_of_inputs = Bounded(U)
         square = difference_of_inputs * difference_of_inputs
         needed = largest_needed((square + square).e)
         assert needed <= Fraction(bisector._NEARER_BOUND) <= needed + 64 * U * U
+        assert bisector.nearer_adaptive(make_context(np.ones(1)), 0.1, 0.2, 0.7, 0.2, 0.4, 0.3) == 1  # by 5e-17
+        assert bisector.nearer_adaptive(make_context(np.ones(1)), 0.0, 0.0, 2.0, 0.0, 1.0, 1.0) == 0
 
     def test_control_a_bound_without_the_slack_is_too_small(self) -> None:
         """The bound without its second-order part."""
