@@ -76,7 +76,7 @@ class TestMachineCode:
         constrained_delaunay(PSLG(curve, [(0, 1)]), carve=False)
         function = getattr(sys.modules[module], name)
         if not function.signatures:
-            pytest.skip("it came from the cache as a part of its caller: only a process that compiles it knows its types")
+            pytest.skip("from the cache, as a part of its caller: only a process that compiles it knows its types")
         listing = machine_code(function, function.signatures[0], fastmath=False)
         assert "mulsd" in listing or "fmul" in listing
         assert not FUSED.findall(listing)
