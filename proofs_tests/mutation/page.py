@@ -60,7 +60,7 @@ class Scores:
     def row(self, name: str) -> str:
         """Return the row of a file."""
         numbers = f"{self.total[name]:,} | {self.killed[name]:,} | {self.late[name]} | {self.same[name]}"
-        return f"| {name} | {numbers} | {self.of(name):.1%} |"
+        return f"| {name} | {numbers} | {self.of(name):.2%} |"
 
 
 def name_of(file: str) -> str:

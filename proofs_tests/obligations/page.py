@@ -17,7 +17,8 @@ What exactmesh claims, and how each claim is held: a theorem a line, then the te
   format or for all states. *enumeration* is every case of small sizes; *ablation* takes conditions out one by one,
   *mutation* puts faults in; everything else is a test on the cases that are counted.
 - A *case* is what a test counts for itself, an example of hypothesis, or a test. *CPU s* is processor time of the
-  compiled lane, with the machine code in the cache; *passed* is said of that run.
+  compiled lane, with the machine code in the cache; *passed* is said of that run, *skipped* of
+  tests that only the other, interpreted lane can run, or that need a package which was not there.
 - The *faults* are negative controls: each is seeded by a test, and the same check must refuse it.
 
 Made from the markers of the tests by `python -m proofs_tests.obligations > docs/obligations.md`; the figures by
